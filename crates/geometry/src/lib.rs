@@ -1,0 +1,24 @@
+//! Vectors, rays, boxes, transforms and the analytic shapes: double precision, no I/O, no threads.
+//!
+//! The order of the `mod` lines is the floor order: a module uses only modules listed above it.
+
+pub mod vector;
+
+pub mod ray;
+
+pub mod aabb;
+
+pub mod transform;
+
+pub mod hit;
+
+pub mod roots;
+
+pub mod shape;
+
+pub use aabb::Aabb;
+pub use hit::{Crossings, Hit, Surface};
+pub use ray::Ray;
+pub use shape::{Cone, Cuboid, Cylinder, Shape, ShapeError, Sphere, Triangle};
+pub use transform::{SingularMatrix, Transform};
+pub use vector::{Affine, Mat3, Mat4, Vec2, Vec3};
