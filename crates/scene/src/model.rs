@@ -1,0 +1,237 @@
+//! The scene as written: plain data, the slides' names, the order of the file.
+
+use crate::span::FileId;
+use crate::span::PackedStarts;
+use crate::span::Span;
+use dotray_geometry::Cone;
+use dotray_geometry::Cuboid;
+use dotray_geometry::Cylinder;
+use dotray_geometry::Mat4;
+use dotray_geometry::Sphere;
+use dotray_geometry::Triangle;
+use dotray_geometry::Vec2;
+use dotray_geometry::Vec3;
+use std::path::PathBuf;
+
+/// Red, green, blue; not clamped.
+pub type Color = Vec3;
+
+/// `#camera`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// The eye.
+    pub position: Vec3,
+    /// Where it looks; any length but 0.
+    pub direction: Vec3,
+    /// What is up in the picture; any length but 0, not parallel to the direction.
+    pub up: Vec3,
+    /// Half of the vertical view angle, in radians.
+    pub half_angle: f64,
+}
+
+/// 1 / (constant + linear d + quadratic d²).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attenuation {
+    /// ca
+    pub constant: f64,
+    /// la
+    pub linear: f64,
+    /// qa
+    pub quadratic: f64,
+}
+
+/// A light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// `#light_point`
+    Point {
+        /// Colour.
+        color: Color,
+        /// Where it stands.
+        position: Vec3,
+        /// How it fades.
+        attenuation: Attenuation,
+    },
+    /// `#light_spot`
+    Spot {
+        /// Colour.
+        color: Color,
+        /// Where it stands.
+        position: Vec3,
+        /// Its axis; any length but 0.
+        direction: Vec3,
+        /// How it fades.
+        attenuation: Attenuation,
+        /// sc: the angle between axis and edge, in radians.
+        cutoff: f64,
+        /// sd: the exponent is 128 sd.
+        dropoff: f64,
+    },
+    /// `#light_dir`
+    Directional {
+        /// Colour.
+        color: Color,
+        /// Where the light travels; any length but 0.
+        direction: Vec3,
+    },
+    /// `#light_area`: a disc.
+    Area {
+        /// Colour.
+        color: Color,
+        /// The disc's centre.
+        position: Vec3,
+        /// The normal of the side that emits; any length but 0.
+        direction: Vec3,
+        /// The disc's radius, above 0.
+        radius: f64,
+        /// How it fades.
+        attenuation: Attenuation,
+    },
+}
+
+/// `#material`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// M_A
+    pub ambient: Color,
+    /// M_D
+    pub diffuse: Color,
+    /// M_S
+    pub specular: Color,
+    /// M_E
+    pub emissive: Color,
+    /// ks, kSpec
+    pub k_specular: f64,
+    /// kt, kTrans
+    pub k_transmission: f64,
+    /// ir
+    pub index_of_refraction: f64,
+    /// tn: the number of a texture in the same file.
+    pub texture: Option<u32>,
+    /// The text between the exclamation marks.
+    pub text: String,
+}
+
+/// `#vertex`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex {
+    /// Where it is.
+    pub position: Vec3,
+    /// Its normal at the length given.
+    pub normal: Vec3,
+    /// (s, t)
+    pub texcoord: Vec2,
+}
+
+/// Which kind of shape; also the name of the typed array that holds it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ShapeKind {
+    /// `#shape_sphere`
+    Sphere,
+    /// `#shape_box`
+    Cuboid,
+    /// `#shape_cylinder`
+    Cylinder,
+    /// `#shape_cone`
+    Cone,
+    /// `#shape_triangle` of 24 numbers
+    Triangle,
+    /// `#shape_triangle` of three vertex numbers
+    IndexedTriangle,
+}
+
+/// The shapes of one kind of one file, in file order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShapeList<T> {
+    /// The shapes, in object coordinates.
+    pub shapes: Vec<T>,
+    /// The material of each; -1 is the default material.
+    pub materials: Vec<i32>,
+    /// Where each directive begins in its file.
+    pub starts: PackedStarts,
+}
+
+/// Something that has a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed<T> {
+    /// The value.
+    pub value: T,
+    /// Its directive, from `#` to the last argument.
+    pub span: Span,
+}
+
+/// What stands in the tree, in file order: groups open and close, shapes come in runs of one kind. Flat, so that
+/// neither 10⁷ shapes nor 10⁵ nested groups need an allocation or a stack frame each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Item {
+    /// `#group_begin`: the number of its matrix in [`SceneFile::groups`].
+    Open(u32),
+    /// `#group_end`
+    Close,
+    /// Consecutive shapes of one kind: entries `first .. first + count` of the kind's list.
+    Run {
+        /// Which list.
+        kind: ShapeKind,
+        /// The first entry.
+        first: u32,
+        /// How many.
+        count: u32,
+    },
+    /// `#ray_file_instance`: the number of the include in [`SceneFile::includes`].
+    Instance(u32),
+}
+
+/// `#ray_file`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Include {
+    /// The name as written.
+    pub name: String,
+    /// The file it names.
+    pub file: FileId,
+}
+
+/// One `.ray` file as written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneFile {
+    /// The path it was read from.
+    pub path: PathBuf,
+    /// The first `#camera`.
+    pub camera: Option<Placed<Camera>>,
+    /// The first `#background`.
+    pub background: Option<Placed<Color>>,
+    /// The first `#ambient`.
+    pub ambient: Option<Placed<Color>>,
+    /// The lights.
+    pub lights: Vec<Placed<Light>>,
+    /// The names of the textures.
+    pub textures: Vec<Placed<String>>,
+    /// The materials.
+    pub materials: Vec<Placed<Material>>,
+    /// The vertices.
+    pub vertices: Vec<Vertex>,
+    /// The included files, in the order of `#ray_file`.
+    pub includes: Vec<Placed<Include>>,
+    /// The group matrices, in the order of `#group_begin`.
+    pub groups: Vec<Placed<Mat4>>,
+    /// The tree, flat and in file order.
+    pub items: Vec<Item>,
+    /// `#shape_sphere`
+    pub spheres: ShapeList<Sphere>,
+    /// `#shape_box`
+    pub cuboids: ShapeList<Cuboid>,
+    /// `#shape_cylinder`
+    pub cylinders: ShapeList<Cylinder>,
+    /// `#shape_cone`
+    pub cones: ShapeList<Cone>,
+    /// `#shape_triangle` with 24 numbers
+    pub triangles: ShapeList<Triangle>,
+    /// `#shape_triangle` with three vertex numbers, known to be in range
+    pub indexed_triangles: ShapeList<[u32; 3]>,
+}
+
+/// A scene: the file asked for and all that it includes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// File 0 is the one asked for.
+    pub files: Vec<SceneFile>,
+}

@@ -1,0 +1,116 @@
+//! The scene with nothing left to guess: what the renderer reads.
+
+use crate::model::Camera;
+use crate::model::Color;
+use crate::model::Light;
+use crate::model::SceneFile;
+use crate::model::ShapeKind;
+use crate::procedural::Procedural;
+use crate::span::FileId;
+use crate::span::Span;
+use dotray_geometry::Transform;
+use std::path::PathBuf;
+
+/// A material as the formula of SPEC 6 wants it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResolvedMaterial {
+    /// M_A
+    pub ambient: Color,
+    /// M_D
+    pub diffuse: Color,
+    /// M_S, the highlight's colour
+    pub specular: Color,
+    /// M_E
+    pub emissive: Color,
+    /// The highlight's exponent: 128 kSpec.
+    pub shininess: f64,
+    /// What a mirrored ray's colour is multiplied by: kSpec · M_S.
+    pub reflection: Color,
+    /// What a refracted or shadow ray's colour is multiplied by: kTrans · M_S.
+    pub transmission: Color,
+    /// ir; above 0 where `transmission` is not 0.
+    pub index_of_refraction: f64,
+    /// The number of a texture in [`Resolved::textures`].
+    pub texture: Option<u32>,
+    /// 3-D textures and bumps.
+    pub procedural: Procedural,
+}
+
+/// An image that materials name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResolvedTexture {
+    /// The name as written.
+    pub name: String,
+    /// Where to look, in this order.
+    pub candidates: Vec<PathBuf>,
+    /// The `#texture` directive.
+    pub span: Span,
+}
+
+/// Consecutive shapes of one kind, one file and one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run {
+    /// The file whose lists hold the shapes.
+    pub file: FileId,
+    /// Which list.
+    pub kind: ShapeKind,
+    /// The first entry.
+    pub first: u32,
+    /// How many.
+    pub count: u32,
+    /// The number of their transform in [`Resolved::frames`].
+    pub frame: u32,
+    /// What to add to a shape's own material number.
+    pub material_base: u32,
+    /// The scene-wide number of the first shape: file order, instances expanded. Ties go to the lower number.
+    pub first_shape: u32,
+}
+
+/// A step of the scene's tree with instances expanded, in file order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TreeEvent {
+    /// A group (or an instance) begins.
+    Open,
+    /// It ends.
+    Close,
+    /// The shapes of a run: the number of the run.
+    Run(u32),
+}
+
+/// The resolved scene.
+#[derive(Clone, Debug)]
+pub struct Resolved {
+    /// The camera, after defaults.
+    pub camera: Camera,
+    /// What a ray that hits nothing returns.
+    pub background: Color,
+    /// L_G
+    pub ambient: Color,
+    /// The lights of the file asked for.
+    pub lights: Vec<Light>,
+    /// All files' materials; the last one is the default material.
+    pub materials: Vec<ResolvedMaterial>,
+    /// All files' textures.
+    pub textures: Vec<ResolvedTexture>,
+    /// The transforms in use; number 0 is the identity.
+    pub frames: Vec<Transform>,
+    /// The shapes.
+    pub runs: Vec<Run>,
+    /// The tree over the runs.
+    pub tree: Vec<TreeEvent>,
+    /// The number of shapes, instances counted as often as they stand.
+    pub shape_count: u32,
+    /// The files, with their lists of shapes.
+    pub files: Vec<SceneFile>,
+}
+
+impl Resolved {
+    /// The number in [`Resolved::materials`] of a shape's material as its file numbers it (-1: the default).
+    #[inline]
+    pub fn material_index(&self, run: &Run, written: i32) -> u32 {
+        match u32::try_from(written) {
+            Ok(number) => run.material_base + number,
+            Err(_) => self.materials.len() as u32 - 1,
+        }
+    }
+}
