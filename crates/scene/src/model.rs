@@ -141,7 +141,7 @@ pub enum ShapeKind {
 }
 
 /// The shapes of one kind of one file, in file order.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ShapeList<T> {
     /// The shapes, in object coordinates.
     pub shapes: Vec<T>,
@@ -149,6 +149,12 @@ pub struct ShapeList<T> {
     pub materials: Vec<i32>,
     /// Where each directive begins in its file.
     pub starts: PackedStarts,
+}
+
+impl<T> Default for ShapeList<T> {
+    fn default() -> Self {
+        Self { shapes: Vec::new(), materials: Vec::new(), starts: PackedStarts::default() }
+    }
 }
 
 /// Something that has a place.
