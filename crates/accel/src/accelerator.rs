@@ -1,16 +1,46 @@
 //! The five accelerators behind one face.
 
+use crate::box_tree;
+use crate::brute;
+use crate::bsp::Bsp;
+use crate::bvh;
+use crate::bvh::Builder;
+use crate::bvh::Child;
+use crate::bvh::Tree;
+use crate::bvh::build::MAX_STACK;
+use crate::bvh::partition::Reference;
+use crate::bvh::wide::WIDTH;
 use crate::input::Boxes;
 use crate::input::GroupEvent;
 use crate::input::Kind;
+use crate::input::MAX_ITEMS;
 use crate::input::Settings;
+use crate::narrow::Frame;
+use crate::octree::Octree;
 use crate::query::Batch;
 use crate::simd::Level;
+use crate::simd::dispatch;
+use crate::stats::Defect;
+use crate::stats::Stats;
+use dotray_geometry::Aabb;
+use rayon::prelude::*;
 
 /// A structure that finds what a ray meets.
 #[derive(Debug)]
 pub struct Accelerator {
     kind: Kind,
+    items: u32,
+    bounds: Aabb,
+    structure: Structure,
+}
+
+/// What the five hold. A box tree and a BVH are walked alike.
+#[derive(Debug)]
+enum Structure {
+    Brute,
+    Tree(Tree),
+    Octree(Octree),
+    Bsp(Bsp),
 }
 
 /// What a build gives.
@@ -25,9 +55,39 @@ pub struct Built {
 
 impl Accelerator {
     /// Builds over `boxes`. The result does not depend on the number of threads.
+    ///
+    /// While it grows, a BVH takes 32 bytes an item besides the order and itself (about 12).
+    ///
+    /// # Panics
+    /// Where there are more than [`MAX_ITEMS`] items.
     pub fn build(kind: Kind, boxes: &impl Boxes, groups: &[GroupEvent], settings: &Settings) -> Built {
-        let _ = (boxes, groups, settings);
-        Built { accelerator: Self { kind }, order: None }
+        let items = boxes.len();
+        assert!(items <= MAX_ITEMS, "an accelerator holds at most {MAX_ITEMS} items");
+        let bounds = union(boxes);
+        let structure = |structure| Self { kind, items, bounds, structure };
+        if items == 0 {
+            return Built { accelerator: structure(Structure::Brute), order: None };
+        }
+        let frame = Frame::around(bounds);
+        match kind {
+            Kind::Brute => Built { accelerator: structure(Structure::Brute), order: None },
+            Kind::Octree => {
+                let octree = Octree::build(boxes, bounds);
+                Built { accelerator: structure(Structure::Octree(octree)), order: None }
+            }
+            Kind::Bsp => {
+                let bsp = Bsp::build(boxes, bounds);
+                Built { accelerator: structure(Structure::Bsp(bsp)), order: None }
+            }
+            Kind::Boxes => {
+                let (tree, order) = box_tree::build(boxes, groups, frame);
+                Built { accelerator: structure(Structure::Tree(tree)), order: Some(order) }
+            }
+            Kind::Bvh => {
+                let (tree, order) = build_bvh(boxes, frame, settings);
+                Built { accelerator: structure(Structure::Tree(tree)), order: Some(order) }
+            }
+        }
     }
 
     /// Which of the five it is.
@@ -35,15 +95,95 @@ impl Accelerator {
         self.kind
     }
 
+    /// The box around all items; empty where there is none.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
     /// The bytes it holds.
     pub fn memory(&self) -> usize {
-        todo!()
+        size_of::<Self>()
+            + match &self.structure {
+                Structure::Brute => 0,
+                Structure::Tree(tree) => tree.memory(),
+                Structure::Octree(octree) => octree.memory(),
+                Structure::Bsp(bsp) => bsp.memory(),
+            }
+    }
+
+    /// Its figures, for dumps; this looks at every node.
+    pub fn stats(&self) -> Stats {
+        let stats = match &self.structure {
+            Structure::Brute => {
+                let mut stats = Stats { items: self.items, ..Stats::empty(self.kind) };
+                stats.leaf(self.items as usize, 1.0, 0);
+                stats
+            }
+            Structure::Tree(tree) => tree.stats(self.kind, self.items),
+            Structure::Octree(octree) => octree.stats(),
+            Structure::Bsp(bsp) => bsp.stats(),
+        };
+        Stats { bytes: self.memory(), ..stats }
+    }
+
+    /// Checks the structure against the boxes it was built over and the order that the build gave: each item is in
+    /// one leaf, or in all whose cells it touches, and every box holds what stands below it.
+    ///
+    /// # Errors
+    /// Tells the first thing that is not so. No input leads to that; it would be a fault of the builder.
+    pub fn validate(&self, boxes: &impl Boxes, order: Option<&[u32]>) -> Result<(), Defect> {
+        match &self.structure {
+            Structure::Brute => Ok(()),
+            Structure::Tree(tree) => tree.validate(boxes, order.unwrap_or_default()),
+            Structure::Octree(octree) => octree.validate(boxes),
+            Structure::Bsp(bsp) => bsp.validate(boxes),
+        }
     }
 
     /// Walks every ray of the batch. `level` says which instructions kernels may use; the calls to the batch are the
     /// same in effect for every level and kind.
     pub fn walk<B: Batch>(&self, level: Level, batch: &mut B) {
-        let _ = (level, batch);
-        todo!()
+        match &self.structure {
+            Structure::Brute => {
+                let items = self.items;
+                dispatch!(level, simd => brute::walk(simd, items, batch));
+            }
+            Structure::Tree(tree) => {
+                // Only scenes with very deeply nested groups ask for more than fits the fixed stack.
+                let (mut fixed, mut grown) = ([0; MAX_STACK + WIDTH], Vec::new());
+                let stack = if tree.stack <= MAX_STACK {
+                    &mut fixed[..]
+                } else {
+                    grown.resize(tree.stack + WIDTH, 0);
+                    &mut grown[..]
+                };
+                dispatch!(level, simd => bvh::walk::walk(simd, tree, stack, batch));
+            }
+            Structure::Octree(octree) => dispatch!(level, simd => octree.walk(simd, batch)),
+            Structure::Bsp(bsp) => dispatch!(level, simd => bsp.walk(simd, batch)),
+        }
     }
+}
+
+/// The box around all items.
+fn union(boxes: &impl Boxes) -> Aabb {
+    (0..boxes.len())
+        .into_par_iter()
+        .with_min_len(1 << 12)
+        .map(|item| boxes.bounds(item))
+        .reduce(|| Aabb::EMPTY, Aabb::union)
+}
+
+/// The tree of a BVH and the order of its leaves.
+fn build_bvh(boxes: &impl Boxes, frame: Frame, settings: &Settings) -> (Tree, Vec<u32>) {
+    let mut references: Vec<_> = (0..boxes.len())
+        .into_par_iter()
+        .with_min_len(1 << 12)
+        .map(|item| Reference::new(frame.narrow(&boxes.bounds(item)), item))
+        .collect();
+    let mut nodes = Vec::new();
+    let root: Child = Builder { quality: settings.quality }.build(&mut references, 0, &mut nodes);
+    let order = references.par_iter().with_min_len(1 << 12).map(Reference::number).collect();
+    drop(references);
+    (Tree::new(frame, nodes, root), order)
 }

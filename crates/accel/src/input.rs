@@ -46,6 +46,10 @@ pub enum Quality {
     Best,
 }
 
+/// The most items that one accelerator holds: a leaf's first position has 28 bits, so that a child of a node and its
+/// distance fit one 64-bit word. A caller checks this before it builds.
+pub const MAX_ITEMS: u32 = (1 << 28) - 8;
+
 /// The items to build over: numbered boxes in the world.
 pub trait Boxes: Sync {
     /// How many items there are; item numbers are `0..len`.

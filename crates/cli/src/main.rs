@@ -1,1 +1,50 @@
-fn main(){}
+//! The program `dotray`: what was typed, what it means, and the commands.
+//!
+//! The order of the `mod` lines is the floor order: a module uses only modules listed above it.
+
+mod values;
+
+mod render_args;
+
+mod args;
+
+mod exit;
+
+mod meaning;
+
+mod plan;
+
+mod messages;
+
+mod interrupt;
+
+mod progress;
+
+mod cost;
+
+mod input;
+
+mod output;
+
+mod reference;
+
+mod commands;
+
+use clap::Parser;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let typed: Vec<OsString> = std::env::args_os().collect();
+    if let Some(message) = args::forgotten_command(&typed) {
+        return exit::Failure::Usage(message).report();
+    }
+    match args::Cli::try_parse_from(typed) {
+        Ok(cli) => commands::run(&cli).map_or_else(|failure| failure.report(), |()| ExitCode::SUCCESS),
+        Err(error) => {
+            // Help goes to standard output, a fault to standard error; a reader who has gone is no fault of ours.
+            let _ = error.print();
+            ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+        }
+    }
+}

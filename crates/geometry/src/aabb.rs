@@ -69,7 +69,16 @@ impl Aabb {
         size.x * size.y + size.y * size.z + size.z * size.x
     }
 
-    /// The smallest axis-aligned box around the eight transformed corners; empty stays empty.
+    /// Grown on every side by 16 roundings of numbers of size `magnitude`: what the few operations between
+    /// a shape and a point on it may be off by.
+    #[inline]
+    pub fn padded(self, magnitude: Vec3) -> Self {
+        let slack = magnitude * (16.0 * f64::EPSILON);
+        Self { min: self.min - slack, max: self.max + slack }
+    }
+
+    /// The axis-aligned box around the eight transformed corners, padded by what rounding may have taken;
+    /// empty stays empty.
     pub fn transformed(&self, to_from_here: &Affine) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
@@ -81,6 +90,50 @@ impl Aabb {
                 if i & 4 == 0 { self.min.z } else { self.max.z },
             )
         };
-        Self::around((0..8).map(|i| to_from_here.transform_point3(corner(i))))
+        let corners = Self::around((0..8).map(|i| to_from_here.transform_point3(corner(i))));
+        corners.padded(image_magnitude(to_from_here, self.min.abs().max(self.max.abs())))
+    }
+}
+
+/// The size of the numbers that meet when points whose coordinates are at most `reach` are transformed.
+pub(crate) fn image_magnitude(to_from_here: &Affine, reach: Vec3) -> Vec3 {
+    let m = &to_from_here.matrix3;
+    m.x_axis.abs() * reach.x
+        + m.y_axis.abs() * reach.y
+        + m.z_axis.abs() * reach.z
+        + to_from_here.translation.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Aabb;
+    use crate::vector::{Affine, Vec3};
+
+    #[test]
+    fn empty_is_neutral_and_stays_empty() {
+        let unit = Aabb::new(Vec3::ZERO, Vec3::ONE);
+        assert!(Aabb::EMPTY.is_empty() && !unit.is_empty());
+        assert_eq!(Aabb::EMPTY.union(unit), unit);
+        assert!(Aabb::EMPTY.transformed(&Affine::from_scale(Vec3::new(-1.0, 2.0, 3.0))).is_empty());
+        assert_eq!((Aabb::EMPTY.size(), Aabb::EMPTY.half_area()), (Vec3::ZERO, 0.0));
+    }
+
+    #[test]
+    fn measures() {
+        let bounds = Aabb::around([Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.0, 4.0, 6.0)]);
+        assert_eq!((bounds.center(), bounds.size()), (Vec3::new(0.5, 3.0, 4.5), Vec3::new(1.0, 2.0, 3.0)));
+        assert_eq!(bounds.half_area(), 11.0);
+        assert!(bounds.contains(bounds.min) && bounds.contains(bounds.max));
+        assert!(!bounds.contains(Vec3::new(0.5, 3.0, 6.1)));
+    }
+
+    #[test]
+    fn a_turned_box_holds_its_corners_and_little_more() {
+        let quarter = Affine::from_rotation_z(std::f64::consts::FRAC_PI_4);
+        let turned = Aabb::new(Vec3::NEG_ONE, Vec3::ONE).transformed(&quarter);
+        let diagonal = 2f64.sqrt();
+        let exact = Aabb::new(Vec3::new(-diagonal, -diagonal, -1.0), Vec3::new(diagonal, diagonal, 1.0));
+        assert_eq!(turned.union(exact), turned);
+        assert!((turned.max - exact.max).max_element() < 1e-14);
     }
 }

@@ -26,32 +26,38 @@ pub struct Surface {
 }
 
 /// The surface points that one ray meets on one shape, in ascending order of t (which may be negative):
-/// at most four (a torus), at most two on a convex shape.
+/// at most two, for every shape is convex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossings {
-    hits: [Hit; 4],
+    /// Places not in use hold t = −∞, which lies in no range, so that `first_within` needs no count.
+    hits: [Hit; 2],
     count: u8,
 }
 
+const UNUSED: Hit = Hit { t: f64::NEG_INFINITY, face: 0 };
+
 impl Crossings {
     /// No crossing.
-    pub const NONE: Self = Self { hits: [Hit { t: 0.0, face: 0 }; 4], count: 0 };
+    pub const NONE: Self = Self { hits: [UNUSED; 2], count: 0 };
 
     /// One crossing.
     #[inline]
     pub const fn one(hit: Hit) -> Self {
-        let mut hits = Self::NONE.hits;
-        hits[0] = hit;
-        Self { hits, count: 1 }
+        Self { hits: [hit, UNUSED], count: 1 }
     }
 
     /// Where the ray enters and where it leaves a convex shape; `enter.t <= leave.t`.
     #[inline]
     pub const fn two(enter: Hit, leave: Hit) -> Self {
-        let mut hits = Self::NONE.hits;
-        hits[0] = enter;
-        hits[1] = leave;
-        Self { hits, count: 2 }
+        Self { hits: [enter, leave], count: 2 }
+    }
+
+    /// The two ends of the part of the line inside a convex shape; none where they come in the wrong order
+    /// or are not finite numbers.
+    #[inline]
+    pub fn of_interval(enter: Hit, leave: Hit) -> Self {
+        let bounded = f64::NEG_INFINITY < enter.t && leave.t < f64::INFINITY;
+        if enter.t <= leave.t && bounded { Self::two(enter, leave) } else { Self::NONE }
     }
 
     /// The crossings, nearest first.
@@ -63,6 +69,45 @@ impl Crossings {
     /// The first one with `t_min < t <= t_max`.
     #[inline]
     pub fn first_within(&self, t_min: f64, t_max: f64) -> Option<Hit> {
-        self.as_slice().iter().copied().find(|hit| t_min < hit.t && hit.t <= t_max)
+        self.hits.into_iter().find(|hit| t_min < hit.t && hit.t <= t_max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Crossings;
+    use super::Hit;
+
+    const NEAR: Hit = Hit { t: -1.0, face: 3 };
+    const FAR: Hit = Hit { t: 2.0, face: 4 };
+
+    #[test]
+    fn the_first_within_lies_above_the_lower_end_and_not_above_the_upper() {
+        let both = Crossings::two(NEAR, FAR);
+        assert_eq!(both.as_slice(), [NEAR, FAR]);
+        assert_eq!(both.first_within(-2.0, 5.0), Some(NEAR));
+        assert_eq!(both.first_within(-1.0, 5.0), Some(FAR));
+        assert_eq!(both.first_within(-1.0, 2.0), Some(FAR));
+        assert_eq!(both.first_within(-1.0, 1.9), None);
+        assert_eq!(both.first_within(2.0, f64::INFINITY), None);
+    }
+
+    #[test]
+    fn unused_places_are_never_found() {
+        assert_eq!(Crossings::NONE.first_within(f64::NEG_INFINITY, f64::INFINITY), None);
+        assert!(Crossings::NONE.as_slice().is_empty());
+        let one = Crossings::one(FAR);
+        assert_eq!(one.as_slice(), [FAR]);
+        assert_eq!(one.first_within(2.0, f64::INFINITY), None);
+    }
+
+    #[test]
+    fn an_interval_is_ordered_and_finite() {
+        assert_eq!(Crossings::of_interval(NEAR, FAR), Crossings::two(NEAR, FAR));
+        assert_eq!(Crossings::of_interval(FAR, NEAR), Crossings::NONE);
+        let at = |t| Hit { t, face: 0 };
+        assert_eq!(Crossings::of_interval(NEAR, at(f64::INFINITY)), Crossings::NONE);
+        assert_eq!(Crossings::of_interval(at(f64::NEG_INFINITY), FAR), Crossings::NONE);
+        assert_eq!(Crossings::of_interval(at(f64::NAN), FAR), Crossings::NONE);
     }
 }

@@ -19,6 +19,9 @@ pub mod shape;
 pub use aabb::Aabb;
 pub use hit::{Crossings, Hit, Surface};
 pub use ray::Ray;
-pub use shape::{Cone, Cuboid, Cylinder, Shape, ShapeError, Sphere, Triangle};
+pub use shape::{
+    Cone, Cuboid, Cylinder, OrientedCone, OrientedCylinder, Shape, ShapeError, Sphere, Triangle,
+};
+pub use shape::{TriangleRay, face_normal, interpolated_normal, intersect_vertices};
 pub use transform::{SingularMatrix, Transform};
 pub use vector::{Affine, Mat3, Mat4, Vec2, Vec3};

@@ -1,16 +1,18 @@
 //! The closed list of shapes and its dispatch; each shape's file holds all that is known of it.
 
+mod round;
+
 mod cone;
 mod cuboid;
 mod cylinder;
 mod sphere;
 mod triangle;
 
-pub use cone::Cone;
+pub use cone::{Cone, OrientedCone};
 pub use cuboid::Cuboid;
-pub use cylinder::Cylinder;
+pub use cylinder::{Cylinder, OrientedCylinder};
 pub use sphere::Sphere;
-pub use triangle::Triangle;
+pub use triangle::{Triangle, TriangleRay, face_normal, interpolated_normal, intersect_vertices};
 
 use crate::aabb::Aabb;
 use crate::hit::{Crossings, Hit, Surface};
@@ -81,12 +83,12 @@ impl Shape {
         each_shape!(self, shape => shape.surface(ray, hit))
     }
 
-    /// The smallest box around the shape.
+    /// The smallest box around the shape, padded by what rounding may move points of its surface.
     pub fn bounds(&self) -> Aabb {
         each_shape!(self, shape => shape.bounds())
     }
 
-    /// A tight world box of the shape under `world_from_object`.
+    /// A tight world box of the shape under `world_from_object`, padded likewise.
     pub fn world_bounds(&self, world_from_object: &Affine) -> Aabb {
         each_shape!(self, shape => shape.world_bounds(world_from_object))
     }

@@ -1,1 +1,42 @@
-//! x
+//! How a picture is made: bake → accelerator → tiles of samples → film.
+//!
+//! [`World::prepare`] turns a resolved scene into what rays meet; [`render`] turns that into a picture. Both are
+//! functions of their arguments alone: threads, tiles and SIMD levels change the time, never the bytes.
+//!
+//! The order of the `mod` lines is the floor order: a module uses only modules listed above it.
+
+pub mod options;
+
+pub mod stats;
+
+pub mod error;
+
+pub mod camera;
+
+pub mod noise;
+
+pub mod solid;
+
+pub mod texture;
+
+pub mod light;
+
+pub mod shapes;
+
+pub mod world;
+
+mod query;
+
+pub mod shade;
+
+pub mod trace;
+
+pub mod sampler;
+
+pub mod tiles;
+
+pub use error::RenderError;
+pub use options::{Antialias, Crop, Options, PrepareOptions, Shadows, TextureFilter};
+pub use stats::{MemoryPart, Stats};
+pub use tiles::{Observer, Rendering, Silent, render};
+pub use world::World;

@@ -15,6 +15,13 @@ pub struct Span {
     pub end: u64,
 }
 
+impl Span {
+    /// Bytes `start .. end` of `file`.
+    pub fn new(file: FileId, start: usize, end: usize) -> Self {
+        Self { file, start: start as u64, end: end as u64 }
+    }
+}
+
 /// Where each shape's directive begins: four bytes a shape, for files of any size.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PackedStarts {
@@ -27,7 +34,7 @@ impl PackedStarts {
 
     /// Appends the byte offset of the next shape; offsets do not fall.
     pub fn push(&mut self, start: u64) {
-        if self.offsets.len() % Self::BLOCK == 0 {
+        if self.offsets.len().is_multiple_of(Self::BLOCK) {
             self.blocks.push(start);
         }
         let base = self.blocks.last().copied().unwrap_or(0);

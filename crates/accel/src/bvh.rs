@@ -1,0 +1,18 @@
+//! The bounding-volume hierarchy: nodes of eight boxes in single precision, one walk for nearest and any hit.
+//!
+//! The order of the `mod` lines is the floor order here too.
+
+pub mod wide;
+
+pub mod partition;
+
+pub mod split;
+
+pub mod build;
+
+pub mod check;
+
+pub mod walk;
+
+pub use build::Builder;
+pub use wide::{Child, Tree};

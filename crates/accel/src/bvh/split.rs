@@ -1,0 +1,139 @@
+//! Where to part a range of references: the surface-area heuristic over bins of their centres.
+
+use crate::bvh::partition::Extent;
+use crate::bvh::partition::PIECE;
+use crate::bvh::partition::Reference;
+use crate::bvh::partition::Span;
+use crate::input::Quality;
+use rayon::prelude::*;
+
+/// A place to part a range: references whose centre falls into a bin below `bin` go first.
+#[derive(Clone, Copy, Debug)]
+pub struct Split {
+    axis: usize,
+    bin: usize,
+    low: f32,
+    scale: f32,
+    /// What the two parts are expected to cost, in surface times items.
+    pub cost: f32,
+}
+
+impl Split {
+    /// On which side a reference falls.
+    #[inline(always)]
+    pub fn below(&self, reference: &Reference) -> bool {
+        // The same arithmetic as in `Bins::add`, so that counts and parts agree.
+        (((reference.center()[self.axis] - self.low) * self.scale) as usize) < self.bin
+    }
+}
+
+/// What testing `count` items costs, where the test of a node costs 1: reaching the leaf, and each item.
+#[inline(always)]
+pub fn leaf_cost(count: usize) -> f32 {
+    LEAF_COST + ITEM_COST * count as f32
+}
+
+/// The cost of reaching a leaf.
+const LEAF_COST: f32 = 1.0;
+
+/// The cost of one item.
+const ITEM_COST: f32 = 0.3;
+
+/// The best of the splits tried, or none where all centres lie in one bin.
+pub fn best_split(references: &[Reference], span: &Span, quality: Quality) -> Option<Split> {
+    match quality {
+        Quality::Fast => Bins::<8>::of(references, span).best(),
+        Quality::Balanced => Bins::<16>::of(references, span).best(),
+        Quality::Best => Bins::<32>::of(references, span).best(),
+    }
+}
+
+/// References counted by where their centres lie, on each axis.
+#[derive(Clone)]
+struct Bins<const N: usize> {
+    low: [f32; 4],
+    scale: [f32; 4],
+    extents: [[Extent; N]; 3],
+    counts: [[u32; N]; 3],
+}
+
+impl<const N: usize> Bins<N> {
+    /// No references, with bins over the span's centres.
+    fn empty(span: &Span) -> Self {
+        let mut scale = [0.0; 4];
+        for (axis, scale) in scale.iter_mut().enumerate().take(3) {
+            let length = span.centers.high[axis] - span.centers.low[axis];
+            // A little less than N bins' worth, so that the last centre falls into the last bin.
+            *scale = if length > 1e-30 { N as f32 * 0.999_99 / length } else { 0.0 };
+        }
+        Self { low: span.centers.low, scale, extents: [[Extent::EMPTY; N]; 3], counts: [[0; N]; 3] }
+    }
+
+    /// All the references, counted by all threads where they are many.
+    fn of(references: &[Reference], span: &Span) -> Self {
+        let empty = Self::empty(span);
+        if references.len() <= PIECE {
+            return empty.with(references);
+        }
+        let pieces = references.par_chunks(PIECE).map(|piece| Self::empty(span).with(piece));
+        pieces.reduce(|| empty.clone(), Self::joined)
+    }
+
+    /// These as well.
+    fn with(mut self, references: &[Reference]) -> Self {
+        for reference in references {
+            let center = reference.center();
+            let place: [f32; 4] = std::array::from_fn(|i| (center[i] - self.low[i]) * self.scale[i]);
+            for axis in 0..3 {
+                let bin = (place[axis] as usize).min(N - 1);
+                self.extents[axis][bin].add(reference);
+                self.counts[axis][bin] += 1;
+            }
+        }
+        self
+    }
+
+    /// Two sets of references together.
+    fn joined(mut self, other: Self) -> Self {
+        for axis in 0..3 {
+            for bin in 0..N {
+                self.extents[axis][bin].join(&other.extents[axis][bin]);
+                self.counts[axis][bin] += other.counts[axis][bin];
+            }
+        }
+        self
+    }
+
+    /// The split of least cost.
+    fn best(&self) -> Option<Split> {
+        let mut best = Split { axis: 0, bin: 0, low: 0.0, scale: 0.0, cost: f32::INFINITY };
+        for axis in 0..3 {
+            if self.scale[axis] == 0.0 {
+                continue;
+            }
+            // From above: what the references at or above each bin cost.
+            let mut above = [f32::INFINITY; N];
+            let (mut extent, mut count) = (Extent::EMPTY, 0);
+            for bin in (1..N).rev() {
+                extent.join(&self.extents[axis][bin]);
+                count += self.counts[axis][bin];
+                if count > 0 {
+                    above[bin] = extent.half_area() * leaf_cost(count as usize);
+                }
+            }
+            // From below, and both together.
+            let (mut extent, mut count) = (Extent::EMPTY, 0);
+            for bin in 1..N {
+                extent.join(&self.extents[axis][bin - 1]);
+                count += self.counts[axis][bin - 1];
+                if count > 0 {
+                    let cost = extent.half_area() * leaf_cost(count as usize) + above[bin];
+                    if cost < best.cost {
+                        best = Split { axis, bin, low: self.low[axis], scale: self.scale[axis], cost };
+                    }
+                }
+            }
+        }
+        (best.bin > 0).then_some(best)
+    }
+}

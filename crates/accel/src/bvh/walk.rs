@@ -1,0 +1,218 @@
+//! The walk: one for nearest and for any hit, front to back, eight boxes at a time.
+
+use crate::bvh::wide::Child;
+use crate::bvh::wide::Tree;
+use crate::bvh::wide::WIDTH;
+use crate::bvh::wide::WideNode;
+use crate::clip::ClippedRay;
+use crate::narrow::NarrowRay;
+use crate::query::Batch;
+use crate::simd::Simd;
+use crate::simd::f32x8;
+use crate::simd::prelude::*;
+
+/// A narrowed ray with its numbers spread over the lanes.
+#[derive(Clone, Copy)]
+struct SpreadRay<S: Simd> {
+    inverse: [f32x8<S>; 3],
+    inverse_far: [f32x8<S>; 3],
+    near_offset: [f32x8<S>; 3],
+    far_offset: [f32x8<S>; 3],
+    far_side: [usize; 3],
+}
+
+impl<S: Simd> SpreadRay<S> {
+    #[inline(always)]
+    fn new(simd: S, ray: &NarrowRay) -> Self {
+        let spread = |numbers: [f32; 3]| numbers.map(|number| f32x8::splat(simd, number));
+        Self {
+            inverse: spread(ray.inverse),
+            inverse_far: spread(ray.inverse_far),
+            near_offset: spread(ray.near_offset),
+            far_offset: spread(ray.far_offset),
+            far_side: ray.far_side,
+        }
+    }
+
+    /// Which of a node's boxes the ray meets at some t' in [0, bound] (bit by bit), and where it enters each.
+    #[inline(always)]
+    fn meets(&self, simd: S, node: &WideNode, bound: f32) -> (u32, [f32; WIDTH]) {
+        let near = |axis: usize| {
+            let planes = &node.planes[axis][(self.far_side[axis] ^ 1) & 1];
+            f32x8::load_array_ref(simd, planes).mul_sub(self.inverse[axis], self.near_offset[axis])
+        };
+        let far = |axis: usize| {
+            let planes = &node.planes[axis][self.far_side[axis] & 1];
+            f32x8::load_array_ref(simd, planes).mul_sub(self.inverse_far[axis], self.far_offset[axis])
+        };
+        let enter = near(0).max(near(1)).max(near(2).max(f32x8::splat(simd, 0.0)));
+        let leave = far(0).min(far(1)).min(far(2).min(f32x8::splat(simd, bound)));
+        let mask = enter.simd_le(leave).to_bitmask();
+        (mask as u32, enter.to_array())
+    }
+}
+
+/// A child that waits, in one word that sorts by distance: where the ray enters its box (never below 0, so that its
+/// bits ascend with it), then the child.
+#[inline(always)]
+fn waiting(enter: f32, child: Child) -> u64 {
+    (u64::from(enter.to_bits()) << 32) | u64::from(child.0)
+}
+
+/// Walks every ray of the batch through the tree; `stack` has room for `tree.stack` children and eight more.
+#[inline(always)]
+pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &mut B) {
+    for i in 0..batch.len() {
+        let tests = walk_ray(simd, tree, stack, batch, i);
+        batch.finished(i, tests);
+    }
+}
+
+/// Walks one ray and returns how many boxes it was tested against.
+#[inline(always)]
+fn walk_ray<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &mut B, i: usize) -> u64 {
+    let query = batch.query(i);
+    let Some(clipped) = ClippedRay::new(&query, tree.frame.scene()) else { return 1 };
+    let narrow = tree.frame.narrow_ray(&clipped);
+    let ray = SpreadRay::new(simd, &narrow);
+    let mut t_max = query.t_max;
+    let mut bound = narrow.bound(t_max);
+    let mut nodes = 0;
+    let mut top = 0;
+    let mut child = tree.root;
+    'walk: loop {
+        if child.is_leaf() {
+            // A leaf: the caller tests the items, and may bring the bound nearer.
+            let (first, count) = child.items();
+            let answer = batch.leaf_range(simd, i, first, count, t_max);
+            if answer == f64::NEG_INFINITY {
+                break;
+            }
+            if answer < t_max {
+                t_max = answer;
+                bound = narrow.bound(t_max);
+            }
+        } else {
+            // A node: the boxes that the ray meets go onto the stack, the nearest on top.
+            let node = &tree.nodes[child.0 as usize];
+            nodes += 1;
+            let (mut mask, enter) = ray.meets(simd, node, bound);
+            if mask != 0 {
+                let lane = mask.trailing_zeros() as usize & 7;
+                mask &= mask - 1;
+                if mask == 0 {
+                    child = node.children[lane];
+                    continue 'walk;
+                }
+                let bottom = top;
+                stack[top] = waiting(enter[lane], node.children[lane]);
+                top += 1;
+                while mask != 0 {
+                    let lane = mask.trailing_zeros() as usize & 7;
+                    mask &= mask - 1;
+                    insert(stack, bottom, top, waiting(enter[lane], node.children[lane]));
+                    top += 1;
+                }
+                top -= 1;
+                child = Child(stack[top] as u32);
+                continue 'walk;
+            }
+        }
+        // The next child that waits, unless a hit has been found in front of it.
+        loop {
+            if top == 0 {
+                break 'walk;
+            }
+            top -= 1;
+            let next = stack[top];
+            if f32::from_bits((next >> 32) as u32) <= bound {
+                child = Child(next as u32);
+                break;
+            }
+        }
+    }
+    8 * nodes + 1
+}
+
+/// Inserts into `stack[bottom..top]`, which descends.
+#[inline(always)]
+fn insert(stack: &mut [u64], bottom: usize, top: usize, new: u64) {
+    let mut place = top;
+    while place > bottom && stack[place - 1] < new {
+        stack[place] = stack[place - 1];
+        place -= 1;
+    }
+    stack[place] = new;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::narrow::Frame;
+    use crate::narrow::Slack;
+    use crate::query::Query;
+    use crate::simd::available_levels;
+    use crate::simd::dispatch;
+    use dotray_geometry::Aabb;
+    use dotray_geometry::Ray;
+    use dotray_geometry::Vec3;
+
+    /// From -1 to below 1, the same on every machine.
+    fn number(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Where a ray meets a sphere, as a caller would find it.
+    fn sphere_hit(ray: &Ray, center: Vec3, radius: f64) -> Option<f64> {
+        let to_center = center - ray.origin;
+        let middle = to_center.dot(ray.direction);
+        let square = radius * radius - (to_center - ray.direction * middle).length_squared();
+        (square >= 0.0).then(|| middle - square.sqrt())
+    }
+
+    /// How many of the hits on single spheres the test of their boxes hides, at the end of a ray that ends right there;
+    /// the rays touch the spheres next to the planes of their boxes, from near, far and very far.
+    fn hidden_hits(frame: &Frame, level: crate::simd::Level) -> (u32, u32) {
+        let (mut hits, mut hidden) = (0, 0);
+        let mut state = 1;
+        for i in 0..60_000 {
+            let center = Vec3::new(number(&mut state), number(&mut state), number(&mut state));
+            let radius = 0.001 + 0.01 * number(&mut state).abs();
+            let axis = i % 3;
+            let mut pole = center;
+            pole[axis] += radius.copysign(number(&mut state));
+            let mut direction = Vec3::new(number(&mut state), number(&mut state), number(&mut state));
+            direction[axis] *= [0.0, 1e-13, 1e-8, 1e-5][i / 3 % 4];
+            let direction = direction.normalize();
+            let distance = [0.1, 3.0, 1e4, 1e8][i / 12 % 4] * (1.1 + number(&mut state));
+            let ray = Ray::new(pole - direction * distance, direction);
+            let Some(t) = sphere_hit(&ray, center, radius).filter(|&t| t > 0.0) else { continue };
+            hits += 1;
+            let query = Query { ray, t_min: 0.0, t_max: t };
+            let clipped = ClippedRay::new(&query, frame.scene());
+            let narrow = clipped.map(|clipped| frame.narrow_ray(&clipped));
+            let mut node = WideNode::EMPTY;
+            node.set(0, &frame.narrow(&Aabb::new(center - radius, center + radius)), Child::leaf(0, 1));
+            let met = narrow.is_some_and(|ray| {
+                let bound = ray.bound(t);
+                dispatch!(level, simd => SpreadRay::new(simd, &ray).meets(simd, &node, bound).0) == 1
+            });
+            hidden += u32::from(!met);
+        }
+        (hits, hidden)
+    }
+
+    #[test]
+    fn no_hit_is_hidden_and_without_slack_some_are() {
+        let frame = Frame::around(Aabb::new(Vec3::splat(-1.1), Vec3::splat(1.1)));
+        let careless = frame.with_slack(Slack::NONE);
+        for level in available_levels() {
+            let (hits, hidden) = hidden_hits(&frame, level);
+            assert!(hits > 20_000);
+            assert_eq!(hidden, 0, "{level:?}");
+            let (_, hidden) = hidden_hits(&careless, level);
+            assert!(hidden > 50, "the control hides only {hidden} of {hits} at {level:?}");
+        }
+    }
+}

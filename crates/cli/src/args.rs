@@ -1,0 +1,156 @@
+//! What was typed: the one table from which the parser, the help, the man page, the completions and docs/cli.md come.
+
+use clap::Args;
+use clap::Parser;
+use clap::Subcommand;
+use std::path::PathBuf;
+
+use crate::render_args::RenderArgs;
+use crate::values::TextOrJson;
+use crate::values::When;
+
+/// Render scenes written in the .ray language.
+#[derive(Debug, Parser)]
+#[command(
+    name = "dotray",
+    bin_name = "dotray",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true,
+    subcommand_required = true,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 done; 1 the scene, the picture or a file is at fault; 2 the command line is; \
+                  130 interrupted.",
+    after_long_help = PROGRAM_EXAMPLES
+)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+
+    /// Colour in messages: on a terminal only (and not where NO_COLOR is set), always, or never.
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = When::Auto)]
+    #[arg(help_heading = "Messages")]
+    pub color: When,
+}
+
+const PROGRAM_EXAMPLES: &str = "\
+Examples:
+  dotray render slides.ray                    picture in slides.png, 640x480
+  dotray render slides.ray slides.bmp 800 600
+  dotray info slides.ray                      what is in the scene
+  dotray dump --world slides.ray              its tree with all matrices
+  dotray help render                          every option of `render`
+
+Exit codes:
+  0    done
+  1    the scene, the picture or a file is at fault; nothing was written
+  2    the command line is at fault; nothing was read
+  130  interrupted (Ctrl-C); nothing was written";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Make a picture of a scene.
+    Render(Box<RenderArgs>),
+    /// Print a scene's tree: one line a group or shape, as the reader understood it.
+    Dump(DumpArgs),
+    /// Say what is in a scene: shapes, lights, materials, textures, bounds, camera.
+    Info(InfoArgs),
+    /// Print a manual page, or the reference in Markdown.
+    Man(ManArgs),
+    /// Print a completion script for a shell.
+    Completions(CompletionsArgs),
+}
+
+/// `dotray dump`.
+#[derive(Debug, Args)]
+pub struct DumpArgs {
+    /// The scene, or - for standard input.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// With each group also its cumulative matrices: objectToWorld and worldToObject.
+    #[arg(long)]
+    pub world: bool,
+}
+
+/// `dotray info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// The scene, or - for standard input.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// For people or for programs.
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+}
+
+/// `dotray man`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  dotray man | man -l -                       read the manual page
+  dotray man render > dotray-render.1         the page of one command
+  dotray man --markdown > docs/cli.md         the whole reference")]
+pub struct ManArgs {
+    /// The command whose page is wanted; without it the program's own page.
+    #[arg(value_name = "COMMAND")]
+    pub command: Option<String>,
+
+    /// The reference of all commands in Markdown instead of roff.
+    #[arg(long, conflicts_with = "command")]
+    pub markdown: bool,
+}
+
+/// `dotray completions`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  dotray completions bash > ~/.local/share/bash-completion/completions/dotray
+  dotray completions zsh > ~/.zfunc/_dotray
+  dotray completions fish > ~/.config/fish/completions/dotray.fish")]
+pub struct CompletionsArgs {
+    /// The shell.
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}
+
+/// A first word that is no command but looks like a scene, and what was probably meant.
+pub fn forgotten_command(typed: &[std::ffi::OsString]) -> Option<String> {
+    let words: Vec<String> = typed.iter().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let first = words.first()?;
+    let names_scene = first.to_lowercase().ends_with(".ray") || first.contains('/') || first.contains('\\');
+    let old_option = first == "--in" || first.starts_with("--in=");
+    if !names_scene && !old_option {
+        return None;
+    }
+    let line = words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
+    Some(format!("`{first}` is not a command; did you mean `dotray render {line}`?"))
+}
+
+fn quoted(word: &str) -> String {
+    if word.is_empty() || word.contains(char::is_whitespace) { format!("'{word}'") } else { word.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_table_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_scene_in_the_place_of_a_command_is_explained() {
+        let typed = |words: &[&str]| forgotten_command(&words.iter().map(Into::into).collect::<Vec<_>>());
+        let message = typed(&["dotray", "my scene.ray", "a.png"]).unwrap_or_default();
+        assert!(message.contains("did you mean `dotray render 'my scene.ray' a.png`?"), "{message}");
+        assert!(typed(&["dotray", "--in", "x"]).is_some());
+        assert_eq!(typed(&["dotray", "rendre", "a.ray"]), None);
+        assert_eq!(typed(&["dotray"]), None);
+    }
+}

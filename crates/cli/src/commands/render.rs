@@ -1,0 +1,127 @@
+//! `dotray render`: from a scene to a picture.
+
+use dotray::image::encode;
+use dotray::render::Rendering;
+use dotray::render::World;
+use dotray::render::render;
+use std::time::Instant;
+
+use crate::cost::Cost;
+use crate::cost::Rays;
+use crate::cost::Tests;
+use crate::cost::memory;
+use crate::exit::Failure;
+use crate::exit::put;
+use crate::exit::say;
+use crate::input::Understood;
+use crate::input::understand;
+use crate::interrupt;
+use crate::messages::Messages;
+use crate::output;
+use crate::plan::Place;
+use crate::plan::Plan;
+use crate::plan::plan;
+use crate::progress::Watcher;
+use crate::render_args::RenderArgs;
+use crate::values::TextOrJson;
+use crate::values::When;
+use std::io::IsTerminal;
+use std::io::Write;
+
+/// Makes the picture and says what it cost.
+pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
+    let start = Instant::now();
+    let plan = plan(typed)?;
+    output::check(&plan.output, &plan.input)?;
+    interrupt::watch();
+    let messages = Messages::new(color, plan.quiet);
+    let Understood { resolved, sources, disk, text_bytes, mut seconds } = understand(&plan.input, messages)?;
+    interrupt::check()?;
+    let world = World::prepare(resolved, &disk, &plan.prepare).map_err(|faults| {
+        messages.print(&faults, &sources);
+        Failure::Reported
+    })?;
+    // Nothing can be said about the text any more, and rays may want the memory.
+    drop(sources);
+    interrupt::check()?;
+
+    let Rendering { image, stats, complete } = trace(&world, &plan)?;
+    if !complete {
+        return Err(Failure::Interrupted);
+    }
+    seconds.extend(&stats.seconds);
+    let encoding = Instant::now();
+    let bytes = encode(&image, plan.format, &plan.encode)?;
+    seconds.push(("encode", encoding.elapsed().as_secs_f64()));
+    interrupt::check()?;
+    let writing = Instant::now();
+    output::write(&plan.output, &bytes)?;
+    seconds.push(("write", writing.elapsed().as_secs_f64()));
+    seconds.push(("total", start.elapsed().as_secs_f64()));
+
+    let tracing = seconds.iter().find(|(stage, _)| *stage == "trace").map_or(0.0, |(_, seconds)| *seconds);
+    let window = plan.options.window();
+    let cost = Cost {
+        version: env!("CARGO_PKG_VERSION"),
+        scene: shown(&plan.input),
+        picture: shown(&plan.output),
+        width: window.width,
+        height: window.height,
+        accelerator: plan.prepare.accel.name(),
+        simd: dotray::accel::simd::level_name(dotray::accel::simd::level()),
+        threads: threads(&plan),
+        shapes: world.shape_count(),
+        rays: Rays::new(&stats, tracing),
+        tests: Tests::new(&stats),
+        memory: memory(text_bytes, &stats.memory),
+        seconds,
+    };
+    say_done(&plan, start);
+    say_cost(&plan, &cost)
+}
+
+fn trace(world: &World, plan: &Plan) -> Result<Rendering, Failure> {
+    let window = plan.options.window();
+    let watcher = Watcher::new(u64::from(window.width) * u64::from(window.height), plan.quiet);
+    let rendering = render(world, &plan.options, &watcher);
+    watcher.finish();
+    Ok(rendering?)
+}
+
+fn shown(place: &Place) -> String {
+    match place {
+        Place::Standard => "-".to_owned(),
+        Place::File(path) => path.display().to_string(),
+    }
+}
+
+fn threads(plan: &Plan) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    plan.options.threads.unwrap_or_else(cores)
+}
+
+/// Says where the picture is: to people, and to whoever has left its name to us.
+fn say_done(plan: &Plan, start: Instant) {
+    let Place::File(path) = &plan.output else { return };
+    if !plan.quiet && (plan.output_is_default || std::io::stderr().is_terminal()) {
+        let window = plan.options.window();
+        let seconds = start.elapsed().as_secs_f64();
+        say(&format!("wrote {} ({}x{}, {seconds:.2} s)", path.display(), window.width, window.height));
+    }
+}
+
+fn say_cost(plan: &Plan, cost: &Cost) -> Result<(), Failure> {
+    match (plan.stats, &plan.output) {
+        (None, _) => Ok(()),
+        (Some(TextOrJson::Json), Place::File(_)) => put(cost.json()?.as_bytes()),
+        (Some(TextOrJson::Json), Place::Standard) => {
+            // If nobody reads standard error, nothing can be done about it.
+            let _ = std::io::stderr().lock().write_all(cost.json()?.as_bytes());
+            Ok(())
+        }
+        (Some(TextOrJson::Text), _) => {
+            let _ = std::io::stderr().lock().write_all(cost.text().as_bytes());
+            Ok(())
+        }
+    }
+}

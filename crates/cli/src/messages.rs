@@ -1,0 +1,50 @@
+//! Messages about scenes, in rustc's style, on standard error.
+
+use dotray::scene::Diagnostic;
+use dotray::scene::Severity;
+use dotray::scene::report::render_text;
+use dotray::scene::sources::Sources;
+use std::io;
+use std::io::IsTerminal;
+use std::io::Write;
+
+use crate::values::When;
+
+/// How messages are printed.
+#[derive(Clone, Copy, Debug)]
+pub struct Messages {
+    /// With colour.
+    pub color: bool,
+    /// Errors only.
+    pub quiet: bool,
+}
+
+impl Messages {
+    /// What `--color` and `--quiet` mean here.
+    pub fn new(color: When, quiet: bool) -> Self {
+        let auto = || {
+            let unwanted = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+            let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+            io::stderr().is_terminal() && !unwanted("NO_COLOR") && !dumb
+        };
+        let color = match color {
+            When::Always => true,
+            When::Never => false,
+            When::Auto => auto(),
+        };
+        Self { color, quiet }
+    }
+
+    /// Prints messages about a scene to standard error; true if there is an error among them.
+    pub fn print(self, diagnostics: &[Diagnostic], sources: &Sources) -> bool {
+        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
+        let shown: Vec<Diagnostic> =
+            diagnostics.iter().filter(|&diagnostic| !self.quiet || is_error(diagnostic)).cloned().collect();
+        if !shown.is_empty() {
+            let text = render_text(&shown, sources, self.color);
+            // If nobody reads standard error, nothing can be done about it.
+            let _ = io::stderr().lock().write_all(text.as_bytes());
+        }
+        diagnostics.iter().any(is_error)
+    }
+}

@@ -1,0 +1,246 @@
+//! What the typed words mean: a plan that leaves nothing to decide, or a usage error before any file is read.
+
+use dotray::image::EncodeOptions;
+use dotray::image::Format;
+use dotray::image::Limits;
+use dotray::render::Antialias;
+use dotray::render::Crop;
+use dotray::render::Options;
+use dotray::render::PrepareOptions;
+use std::fmt::Display;
+use std::path::Path;
+use std::path::PathBuf;
+
+use crate::exit::Failure;
+use crate::meaning;
+use crate::render_args::RenderArgs;
+use crate::values::Aa;
+use crate::values::Depth;
+use crate::values::TextOrJson;
+
+/// A file, or the standard stream that `-` stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Standard input or output.
+    Standard,
+    /// A file.
+    File(PathBuf),
+}
+
+impl Place {
+    /// What a typed path means.
+    pub fn of(path: &Path) -> Self {
+        if path == Path::new("-") { Self::Standard } else { Self::File(path.to_owned()) }
+    }
+}
+
+/// All that `dotray render` is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Where the scene comes from.
+    pub input: Place,
+    /// Where the picture goes.
+    pub output: Place,
+    /// Whether the output's name is our choice, so that we must say it.
+    pub output_is_default: bool,
+    /// The picture's format.
+    pub format: Format,
+    /// How it is stored.
+    pub encode: EncodeOptions,
+    /// What the picture depends on.
+    pub options: Options,
+    /// How the scene is prepared.
+    pub prepare: PrepareOptions,
+    /// Print errors only.
+    pub quiet: bool,
+    /// Whether and how to print what it cost.
+    pub stats: Option<TextOrJson>,
+}
+
+/// Finds out what was meant.
+pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
+    let shown = |path: &PathBuf| path.display().to_string();
+    let input = either("scene", "--in", typed.input.as_ref(), typed.input_option.as_ref(), shown)?
+        .ok_or_else(|| Failure::Usage("no scene given: dotray render IN [OUT]".to_owned()))?;
+    let input = Place::of(input);
+    let output = either("picture", "--output", typed.output.as_ref(), typed.output_option.as_ref(), shown)?;
+    let output_is_default = output.is_none();
+    let output = output.map_or_else(|| default_output(&input), |path| Place::of(path));
+    let format = format(typed, &output)?;
+    let options = options(typed)?;
+    options.validate()?;
+    let limits = limits(typed, &options)?;
+    let prepare = PrepareOptions {
+        accel: meaning::accel(typed.accel),
+        quality: meaning::quality(typed.build),
+        threads: options.threads,
+        image_limits: limits,
+    };
+    let encode = encode_options(typed, format)?;
+    let (quiet, stats) = (typed.quiet, typed.stats);
+    Ok(Plan { input, output, output_is_default, format, encode, options, prepare, quiet, stats })
+}
+
+/// A value that has a place and an option: one of them, or neither.
+fn either<T: Copy>(
+    what: &str,
+    option: &str,
+    placed: Option<T>,
+    named: Option<T>,
+    show: impl Fn(T) -> String,
+) -> Result<Option<T>, Failure> {
+    match (placed, named) {
+        (Some(placed), Some(named)) => Err(Failure::Usage(format!(
+            "the {what} is given twice: `{}` in its place and `{option} {}`",
+            show(placed),
+            show(named)
+        ))),
+        (placed, named) => Ok(placed.or(named)),
+    }
+}
+
+fn number<T: Copy + Display>(
+    what: &str,
+    option: &str,
+    placed: Option<T>,
+    named: Option<T>,
+) -> Result<Option<T>, Failure> {
+    either(what, option, placed, named, |value| value.to_string())
+}
+
+/// IN's name with the extension of the best format that this build has, in the working directory.
+fn default_output(input: &Place) -> Place {
+    match input {
+        Place::Standard => Place::Standard,
+        Place::File(path) => {
+            let name = path.file_name().unwrap_or("picture".as_ref());
+            Place::File(Path::new(name).with_extension(extension(default_format())))
+        }
+    }
+}
+
+fn default_format() -> Format {
+    if Format::Png.is_built() { Format::Png } else { Format::Bmp }
+}
+
+fn extension(format: Format) -> &'static str {
+    format.extensions().first().copied().unwrap_or("png")
+}
+
+fn format(typed: &RenderArgs, output: &Place) -> Result<Format, Failure> {
+    let format = match (typed.format, output) {
+        (Some(name), Place::Standard | Place::File(_)) => meaning::named(name),
+        (None, Place::Standard) => default_format(),
+        (None, Place::File(path)) => {
+            Format::from_path(path).map_err(|error| Failure::Usage(format!("{error} (or say --format)")))?
+        }
+    };
+    let deeper = match (typed.depth, format) {
+        (Some(Depth::Sixteen), Format::Png | Format::Png16) | (None, Format::Png16) => Format::Png16,
+        (Some(Depth::Eight), Format::Png16) => {
+            return Err(Failure::Usage("--format png16 and --depth 8 contradict each other".to_owned()));
+        }
+        (Some(Depth::Sixteen), other) => {
+            let name = other.name();
+            return Err(Failure::Usage(format!(
+                "--depth 16 goes with PNG only; the picture would be {name}"
+            )));
+        }
+        (Some(Depth::Eight) | None, other) => other,
+    };
+    if deeper.is_built() {
+        Ok(deeper)
+    } else {
+        Err(Failure::Usage(format!("{} is left out of this build", deeper.name())))
+    }
+}
+
+fn options(typed: &RenderArgs) -> Result<Options, Failure> {
+    let defaults = Options::default();
+    let (width, height) = size(typed, &defaults)?;
+    let crop = typed.crop.map(|crop| {
+        let [x, y, width, height] = crop.0;
+        Crop { x, y, width, height }
+    });
+    Ok(Options {
+        width,
+        height,
+        crop,
+        recursion: number("recursion limit", "--recursion", typed.recursion_value, typed.recursion)?
+            .unwrap_or(defaults.recursion),
+        threshold: number("contribution threshold", "--cutoff", typed.cutoff_value, typed.cutoff)?
+            .unwrap_or(defaults.threshold),
+        antialias: antialias(typed)?,
+        shadows: meaning::shadows(typed.shadows),
+        texture_filter: meaning::texture_filter(typed.texture_filter),
+        light_samples: typed.light_samples.unwrap_or(defaults.light_samples),
+        threads: typed.threads.map(usize::from),
+        tile_size: typed.tile_size.unwrap_or(defaults.tile_size),
+    })
+}
+
+/// Width and height; where only one is given, the other keeps the shape of the default picture.
+fn size(typed: &RenderArgs, defaults: &Options) -> Result<(u32, u32), Failure> {
+    let width = number("width", "--width", typed.width_value, typed.width)?;
+    let height = number("height", "--height", typed.height_value, typed.height)?;
+    let scaled = |edge: u32, to: u32, from: u32| {
+        let rounded = (u64::from(edge) * u64::from(to) + u64::from(from) / 2) / u64::from(from);
+        u32::try_from(rounded).unwrap_or(u32::MAX).max(edge.min(1))
+    };
+    match (typed.size, width, height) {
+        (Some(size), None, None) => Ok((size.0, size.1)),
+        (Some(size), width, height) => {
+            let (what, value) = if width.is_some() { ("width", width) } else { ("height", height) };
+            let value = value.unwrap_or_default();
+            let size = format!("{}x{}", size.0, size.1);
+            Err(Failure::Usage(format!("the {what} is given twice: {value} and `--size {size}`")))
+        }
+        (None, Some(width), Some(height)) => Ok((width, height)),
+        (None, Some(width), None) => Ok((width, scaled(width, defaults.height, defaults.width))),
+        (None, None, Some(height)) => Ok((scaled(height, defaults.width, defaults.height), height)),
+        (None, None, None) => Ok((defaults.width, defaults.height)),
+    }
+}
+
+fn limits(typed: &RenderArgs, options: &Options) -> Result<Limits, Failure> {
+    let defaults = Limits::default();
+    let max_pixels = typed.max_pixels.unwrap_or(defaults.max_pixels);
+    let window = options.window();
+    let pixels = u64::from(window.width) * u64::from(window.height);
+    if pixels > max_pixels {
+        let size = format!("{}x{}", window.width, window.height);
+        let more = "--max-pixels allows more";
+        return Err(Failure::Usage(format!(
+            "a picture of {size} has {pixels} pixels; the limit is {max_pixels} ({more})"
+        )));
+    }
+    // Whoever allows more pixels than usual allows the memory for them.
+    Ok(Limits { max_pixels, max_bytes: defaults.max_bytes.max(max_pixels.saturating_mul(16)) })
+}
+
+fn encode_options(typed: &RenderArgs, format: Format) -> Result<EncodeOptions, Failure> {
+    let defaults = EncodeOptions::default();
+    if typed.jpeg_quality.is_some() && format != Format::Jpeg {
+        let name = format.name();
+        return Err(Failure::Usage(format!(
+            "--jpeg-quality goes with JPEG only; the picture would be {name}"
+        )));
+    }
+    let jpeg_quality = typed.jpeg_quality.unwrap_or(defaults.jpeg_quality);
+    Ok(EncodeOptions { srgb: typed.srgb, jpeg_quality, ..defaults })
+}
+
+fn antialias(typed: &RenderArgs) -> Result<Antialias, Failure> {
+    let idle = typed.aa_threshold.map(|_| "--aa-threshold").or(typed.aa_depth.map(|_| "--aa-depth"));
+    match (typed.aa, idle) {
+        (Aa::None | Aa::Grid(_), Some(option)) => {
+            Err(Failure::Usage(format!("{option} has a meaning only with --aa adaptive")))
+        }
+        (Aa::None, None) => Ok(Antialias::None),
+        (Aa::Grid(n), None) => Ok(Antialias::Grid(n)),
+        (Aa::Adaptive, Some(_) | None) => Ok(Antialias::Adaptive {
+            threshold: typed.aa_threshold.unwrap_or(0.1),
+            depth: typed.aa_depth.unwrap_or(3),
+        }),
+    }
+}

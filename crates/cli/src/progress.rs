@@ -1,0 +1,90 @@
+//! A bar on a terminal: share, rate, time left. Nothing at all anywhere else.
+
+use dotray::render::Observer;
+use dotray::render::tiles::Progress;
+use indicatif::ProgressBar;
+use indicatif::ProgressDrawTarget;
+use indicatif::ProgressState;
+use indicatif::ProgressStyle;
+use std::fmt;
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use crate::interrupt;
+
+/// Watches a picture being made: draws the bar, if there is one, and passes Ctrl-C on.
+pub struct Watcher {
+    bar: Option<ProgressBar>,
+}
+
+/// The eye follows no faster, and each drawing costs a system call.
+const DRAWINGS_A_SECOND: u8 = 10;
+
+impl Watcher {
+    /// A bar over `pixels` on standard error if that is a terminal and `quiet` is not asked for.
+    pub fn new(pixels: u64, quiet: bool) -> Self {
+        let drawn =
+            !quiet && std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|t| t != "dumb");
+        Self { bar: drawn.then(|| bar(pixels)) }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn bar(pixels: u64) -> ProgressBar {
+    let target = ProgressDrawTarget::stderr_with_hz(DRAWINGS_A_SECOND);
+    let bar = ProgressBar::with_draw_target(Some(pixels), target);
+    let rate = |state: &ProgressState, out: &mut dyn fmt::Write| {
+        // Nothing can be done about a terminal that takes no text.
+        let _ = out.write_str(&rate_text(state.per_sec()));
+    };
+    let template = "{wide_bar} {percent:>3}%  {rate}  {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.with_key("rate", rate));
+    }
+    bar.enable_steady_tick(Duration::from_millis(500));
+    bar
+}
+
+/// Pixels a second for people.
+fn rate_text(per_second: f64) -> String {
+    if per_second >= 1e6 {
+        format!("{:.2} Mpixel/s", per_second / 1e6)
+    } else if per_second >= 1e3 {
+        format!("{:.1} kpixel/s", per_second / 1e3)
+    } else {
+        format!("{per_second:.0} pixel/s")
+    }
+}
+
+impl Observer for Watcher {
+    fn tile_finished(&self, progress: &Progress) {
+        if let Some(bar) = &self.bar {
+            // Tiles report from many threads, so an older count may come after a newer one.
+            if progress.finished_pixels > bar.position() {
+                bar.set_position(progress.finished_pixels);
+            }
+        }
+    }
+
+    fn cancelled(&self) -> bool {
+        interrupt::pressed()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_readable() {
+        assert_eq!(rate_text(12.4), "12 pixel/s");
+        assert_eq!(rate_text(12_345.0), "12.3 kpixel/s");
+        assert_eq!(rate_text(12_345_678.0), "12.35 Mpixel/s");
+    }
+}

@@ -1,0 +1,211 @@
+//! Where a pixel's samples lie, and how they become its colour (SPEC 3 and 4). Pure: whoever calls says what colour
+//! a place has.
+
+use dotray_geometry::Vec3;
+use std::collections::HashMap;
+
+/// A place in the picture in units of a pixel's finest division, from the lower left corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LatticePoint {
+    /// To the right.
+    pub x: u64,
+    /// Up.
+    pub y: u64,
+}
+
+/// Pixels `x .. x + width`, `y .. y + height`, counted from the lower left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// The first column.
+    pub x: u32,
+    /// The first row from below.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Block {
+    /// The pixels row by row from below.
+    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> {
+        let Self { x, y, width, height } = *self;
+        (y..y + height).flat_map(move |j| (x..x + width).map(move |i| (i, j)))
+    }
+}
+
+/// The centres of n × n sub-pixels of each pixel, pixel by pixel.
+pub fn grid_places(block: Block, n: u32) -> Vec<(f64, f64)> {
+    let at = |whole: u32, part: u32| f64::from(whole) + (f64::from(part) + 0.5) / f64::from(n);
+    block
+        .pixels()
+        .flat_map(|(i, j)| (0..n).flat_map(move |b| (0..n).map(move |a| (at(i, a), at(j, b)))))
+        .collect()
+}
+
+/// The mean of each pixel's n × n colours.
+pub fn grid_means(colors: &[Vec3], n: u32) -> Vec<Vec3> {
+    let count = (n * n) as usize;
+    colors.chunks_exact(count).map(|samples| samples.iter().sum::<Vec3>() / count as f64).collect()
+}
+
+/// A square of the lattice whose corners are known.
+#[derive(Clone, Copy)]
+struct Quad {
+    lower_left: LatticePoint,
+    edge: u64,
+}
+
+impl Quad {
+    fn point(&self, right: u64, up: u64) -> LatticePoint {
+        LatticePoint { x: self.lower_left.x + right, y: self.lower_left.y + up }
+    }
+
+    /// Lower left, lower right, upper left, upper right.
+    fn corners(&self) -> [LatticePoint; 4] {
+        let e = self.edge;
+        [self.point(0, 0), self.point(e, 0), self.point(0, e), self.point(e, e)]
+    }
+
+    /// The four edges' middles and the centre.
+    fn middles(&self) -> [LatticePoint; 5] {
+        let (h, e) = (self.edge / 2, self.edge);
+        [self.point(h, 0), self.point(0, h), self.point(h, h), self.point(e, h), self.point(h, e)]
+    }
+
+    fn quadrants(&self) -> [Self; 4] {
+        let edge = self.edge / 2;
+        let at = |right, up| Self { lower_left: self.point(right, up), edge };
+        [at(0, 0), at(edge, 0), at(0, edge), at(edge, edge)]
+    }
+}
+
+/// Adaptive oversampling of a block: the colours of its pixels, row by row from below.
+///
+/// `trace` gives the colours of places it has not been asked for before in this call. Squares are divided level by
+/// level, so that a level's places are traced together.
+pub fn adaptive(
+    block: Block,
+    threshold: f64,
+    depth: u32,
+    mut trace: impl FnMut(&[LatticePoint]) -> Vec<Vec3>,
+) -> Vec<Vec3> {
+    let edge = 1u64 << depth;
+    let pixel = |(i, j): (u32, u32)| Quad {
+        lower_left: LatticePoint { x: u64::from(i) * edge, y: u64::from(j) * edge },
+        edge,
+    };
+    let mut known = HashMap::new();
+    let pixels: Vec<Quad> = block.pixels().map(pixel).collect();
+    learn(pixels.iter().flat_map(Quad::corners), &mut known, &mut trace);
+    // levels[k] holds the squares of level k and, for those divided, where their quadrants begin in level k + 1.
+    let mut levels: Vec<Vec<(Quad, Option<usize>)>> = Vec::new();
+    let mut current = pixels;
+    for level in 0..=depth {
+        let mut next: Vec<Quad> = Vec::new();
+        let mut squares = Vec::with_capacity(current.len());
+        for quad in &current {
+            let divide = level < depth && differ(quad.corners().map(|p| known[&p]), threshold);
+            squares.push((*quad, divide.then_some(next.len())));
+            if divide {
+                next.extend(quad.quadrants());
+            }
+        }
+        let divided = squares.iter().filter(|(_, quadrants)| quadrants.is_some());
+        learn(divided.flat_map(|(quad, _)| quad.middles()), &mut known, &mut trace);
+        levels.push(squares);
+        current = next;
+    }
+    let mut below: Vec<Vec3> = Vec::new();
+    for squares in levels.iter().rev() {
+        let mean = |(quad, quadrants): &(Quad, Option<usize>)| match quadrants {
+            Some(first) => quarter_sum([below[*first], below[first + 1], below[first + 2], below[first + 3]]),
+            None => quarter_sum(quad.corners().map(|p| known[&p])),
+        };
+        let means = squares.iter().map(mean).collect();
+        below = means;
+    }
+    below
+}
+
+fn quarter_sum([a, b, c, d]: [Vec3; 4]) -> Vec3 {
+    (a + b + c + d) * 0.25
+}
+
+/// Whether the largest channel difference exceeds the threshold.
+fn differ(corners: [Vec3; 4], threshold: f64) -> bool {
+    let least = corners.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let most = corners.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    (most - least).max_element() > threshold
+}
+
+fn learn(
+    wanted: impl Iterator<Item = LatticePoint>,
+    known: &mut HashMap<LatticePoint, Vec3>,
+    trace: &mut impl FnMut(&[LatticePoint]) -> Vec<Vec3>,
+) {
+    let mut unknown: Vec<LatticePoint> = wanted.filter(|point| !known.contains_key(point)).collect();
+    unknown.sort_unstable_by_key(|point| (point.y, point.x));
+    unknown.dedup();
+    let colors = trace(&unknown);
+    known.extend(unknown.into_iter().zip(colors));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BLOCK: Block = Block { x: 3, y: 5, width: 4, height: 2 };
+
+    #[test]
+    fn an_even_picture_costs_its_corners() {
+        let mut traced = 0;
+        let colors = adaptive(BLOCK, 0.1, 3, |points| {
+            traced += points.len();
+            vec![Vec3::splat(0.25); points.len()]
+        });
+        assert_eq!(traced, 5 * 3);
+        assert_eq!(colors, vec![Vec3::splat(0.25); 8]);
+    }
+
+    /// The definition of SPEC 4, word for word, without sharing.
+    fn by_definition(quad: Quad, level: u32, depth: u32, threshold: f64, color: &impl Fn(LatticePoint) -> Vec3) -> Vec3 {
+        let corners = quad.corners().map(color);
+        if level == depth || !differ(corners, threshold) {
+            return quarter_sum(corners);
+        }
+        quarter_sum(quad.quadrants().map(|q| by_definition(q, level + 1, depth, threshold, color)))
+    }
+
+    #[test]
+    fn levels_give_what_the_definition_gives_and_trace_nothing_twice() {
+        let color = |p: LatticePoint| {
+            let (x, y) = (p.x as f64 / 8.0 - 4.6, p.y as f64 / 8.0 - 5.7);
+            if x * x + y * y < 1.0 { Vec3::new(1.0, x, y) } else { Vec3::splat(0.1) }
+        };
+        for depth in 0..=3 {
+            let scale = 8 >> depth;
+            let scaled = |p: LatticePoint| color(LatticePoint { x: p.x * scale, y: p.y * scale });
+            let mut seen = std::collections::HashSet::new();
+            let colors = adaptive(BLOCK, 0.1, depth, |points| {
+                assert!(points.iter().all(|p| seen.insert(*p)));
+                points.iter().map(|p| scaled(*p)).collect()
+            });
+            let edge = 1 << depth;
+            let expected: Vec<Vec3> = BLOCK
+                .pixels()
+                .map(|(i, j)| {
+                    let lower_left = LatticePoint { x: u64::from(i) * edge, y: u64::from(j) * edge };
+                    by_definition(Quad { lower_left, edge }, 0, depth, 0.1, &scaled)
+                })
+                .collect();
+            assert_eq!(colors, expected);
+        }
+    }
+
+    #[test]
+    fn grid_places_are_centres() {
+        let places = grid_places(Block { x: 7, y: 1, width: 1, height: 1 }, 2);
+        assert_eq!(places, [(7.25, 1.25), (7.75, 1.25), (7.25, 1.75), (7.75, 1.75)]);
+    }
+}

@@ -1,0 +1,121 @@
+//! The shading formula of SPEC 6, one function a term:
+//!
+//! ```text
+//! Color = M_E + M_A·L_G·T_C
+//!       + Σ_i L_i·S_i·[ M_D·T_C·max(0, n̂·L̂) + M_S·max(0, r̂·L̂)^(128·kSpec) ]·F_SPOT·F_ATTEN
+//!       + kSpec ·M_S·Trace(P, r̂)
+//!       + kTrans·M_S·Trace(P, t̂)
+//! ```
+
+use crate::light::Incident;
+use crate::options::TextureFilter;
+use crate::query::Nearest;
+use crate::solid;
+use crate::world::World;
+use dotray_geometry::Ray;
+use dotray_geometry::Vec3;
+use dotray_scene::resolved::ResolvedMaterial;
+
+/// A point hit, with all that the terms of the formula share.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadePoint<'a> {
+    /// The surface's material.
+    pub material: &'a ResolvedMaterial,
+    /// P
+    pub point: Vec3,
+    /// d̂: the ray's direction.
+    pub direction: Vec3,
+    /// n̂: the shading normal, flipped where the ray leaves.
+    pub normal: Vec3,
+    /// The shape's own normal, flipped where the ray leaves: it faces the viewer always.
+    pub geometric_normal: Vec3,
+    /// Whether the ray comes from outside.
+    pub entering: bool,
+    /// T_C
+    pub texture: Vec3,
+    /// r̂: the mirrored direction.
+    pub mirrored: Vec3,
+}
+
+impl<'a> ShadePoint<'a> {
+    /// The point where `ray` met `nearest`.
+    pub(crate) fn new(world: &'a World, ray: &Ray, nearest: &Nearest, filter: TextureFilter) -> Self {
+        let material = &world.materials[world.shapes.material(nearest.position) as usize];
+        let surface = world.shapes.surface(nearest.position, ray, nearest.hit);
+        let procedural = &material.procedural;
+        let plain = procedural.bumps.is_empty() && surface.in_object.shading_normal == surface.in_object.geometric_normal;
+        let outward = if plain {
+            surface.geometric_normal
+        } else {
+            let normal = surface.in_object.shading_normal.normalize();
+            let leaned = solid::bumped(&procedural.bumps, normal, surface.in_object.point);
+            world.shapes.frame(nearest.position).world_normal(leaned)
+        };
+        let image = material.texture.and_then(|number| world.textures.get(number as usize));
+        let texture = image.map_or(Vec3::ONE, |image| image.color(surface.in_object.texcoord, filter))
+            * solid::color(&procedural.solids, surface.in_object.point);
+        let direction = ray.direction;
+        let entering = direction.dot(surface.geometric_normal) <= 0.0;
+        let facing = |normal: Vec3| if entering { normal } else { -normal };
+        let normal = facing(outward);
+        Self {
+            material,
+            point: surface.point,
+            direction,
+            normal,
+            geometric_normal: facing(surface.geometric_normal),
+            entering,
+            texture,
+            mirrored: direction - normal * (2.0 * direction.dot(normal)),
+        }
+    }
+
+    /// M_E + M_A·L_G·T_C
+    pub fn own_light(&self, global_ambient: Vec3) -> Vec3 {
+        self.material.emissive + self.material.ambient * global_ambient * self.texture
+    }
+
+    /// L_i·[ M_D·T_C·max(0, n̂·L̂) + M_S·max(0, r̂·L̂)^(128·kSpec) ]·F_SPOT·F_ATTEN where n̂·L̂ > 0, else 0:
+    /// what the light would give if nothing lay between.
+    pub fn lit(&self, incident: &Incident) -> Vec3 {
+        let cosine = self.normal.dot(incident.towards);
+        if !(cosine > 0.0) {
+            return Vec3::ZERO;
+        }
+        (self.diffuse(cosine) + self.highlight(incident.towards)) * incident.strength
+    }
+
+    /// M_D·T_C·(n̂·L̂)
+    pub fn diffuse(&self, cosine: f64) -> Vec3 {
+        self.material.diffuse * self.texture * cosine
+    }
+
+    /// M_S·max(0, r̂·L̂)^(128·kSpec), with x^0 = 1.
+    pub fn highlight(&self, towards_light: Vec3) -> Vec3 {
+        let specular = self.material.specular;
+        if specular == Vec3::ZERO {
+            return Vec3::ZERO;
+        }
+        specular * libm::pow(self.mirrored.dot(towards_light).max(0.0), self.material.shininess)
+    }
+
+    /// The mirrored ray.
+    pub fn reflected_ray(&self) -> Ray {
+        Ray::new(self.point, self.mirrored.normalize())
+    }
+
+    /// The ray that Snell's law lets in or out, one side being air; `None` on total internal reflection.
+    pub fn refracted_ray(&self) -> Option<Ray> {
+        let index = self.material.index_of_refraction;
+        let eta = if self.entering { 1.0 / index } else { index };
+        // A shading normal that faces away near a silhouette would bend the ray to the wrong side.
+        let normal = if self.direction.dot(self.normal) >= 0.0 { self.geometric_normal } else { self.normal };
+        let cos_in = -self.direction.dot(normal);
+        let cos_out_squared = 1.0 - eta * eta * (1.0 - cos_in * cos_in);
+        if !(cos_out_squared >= 0.0) {
+            return None;
+        }
+        let direction = self.direction * eta + normal * (eta * cos_in - cos_out_squared.sqrt());
+        Some(Ray::new(self.point, direction.normalize()))
+    }
+}

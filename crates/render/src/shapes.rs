@@ -1,0 +1,365 @@
+//! The baked shapes: flat typed arrays in the accelerator's order, each shape in its cheapest exact form.
+//!
+//! A *position* is a place in the accelerator's order, so that a leaf is one block of memory; a *number* is the
+//! shape's place in the scene's file order, which decides ties.
+
+use dotray_geometry::Cone;
+use dotray_geometry::Crossings;
+use dotray_geometry::Cuboid;
+use dotray_geometry::Cylinder;
+use dotray_geometry::Hit;
+use dotray_geometry::Ray;
+use dotray_geometry::Shape;
+use dotray_geometry::Sphere;
+use dotray_geometry::Surface;
+use dotray_geometry::Transform;
+use dotray_geometry::Triangle;
+use dotray_geometry::Vec3;
+use dotray_geometry::shape::OrientedCone;
+use dotray_geometry::shape::OrientedCylinder;
+use dotray_geometry::shape::TriangleRay;
+use dotray_scene::model::SceneFile;
+use dotray_scene::resolved::Run;
+
+/// In which form a shape was baked. Framed forms are tested in object coordinates with their run's transform.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// A sphere under a similarity.
+    Sphere,
+    /// A box that is axis-aligned in the world.
+    Cuboid,
+    /// A cylinder under a similarity.
+    Cylinder,
+    /// A cone under a similarity.
+    Cone,
+    /// A triangle: its corners in the world.
+    Triangle,
+    /// An ellipsoid.
+    FramedSphere,
+    /// A parallelepiped.
+    FramedCuboid,
+    /// A cylinder under any other map.
+    FramedCylinder,
+    /// A cone under any other map.
+    FramedCone,
+}
+
+impl Form {
+    const ALL: [Self; 9] = [
+        Self::Sphere,
+        Self::Cuboid,
+        Self::Cylinder,
+        Self::Cone,
+        Self::Triangle,
+        Self::FramedSphere,
+        Self::FramedCuboid,
+        Self::FramedCylinder,
+        Self::FramedCone,
+    ];
+}
+
+/// A form and an index into its array, in 32 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Slot(u32);
+
+impl Slot {
+    const INDEX_BITS: u32 = 28;
+
+    fn new(form: Form, index: usize) -> Self {
+        debug_assert!(index < 1 << Self::INDEX_BITS);
+        Self((form as u32) << Self::INDEX_BITS | index as u32)
+    }
+
+    #[inline(always)]
+    fn form(self) -> Form {
+        Form::ALL[(self.0 >> Self::INDEX_BITS) as usize]
+    }
+
+    #[inline(always)]
+    fn index(self) -> usize {
+        (self.0 & ((1 << Self::INDEX_BITS) - 1)) as usize
+    }
+}
+
+/// The most shapes that a scene may hold.
+pub const MAX_SHAPES: u32 = 1 << Slot::INDEX_BITS;
+
+/// The shape at a point hit, as shading wants it: in world coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldSurface {
+    /// The point in the world.
+    pub point: Vec3,
+    /// The outward unit normal of the shape itself, in the world.
+    pub geometric_normal: Vec3,
+    /// The same point in the shape's coordinates, before its groups; its shading normal there, of length 1.
+    pub in_object: Surface,
+}
+
+/// All shapes of a scene.
+#[derive(Debug, Default)]
+pub struct Shapes {
+    slots: Vec<Slot>,
+    numbers: Vec<u32>,
+    materials: Vec<u32>,
+    /// The run of each position; empty where there is only one run.
+    runs_of: Vec<u32>,
+    runs: Vec<Run>,
+    frames: Vec<Transform>,
+    files: Vec<SceneFile>,
+    spheres: Vec<Sphere>,
+    cuboids: Vec<Cuboid>,
+    cylinders: Vec<OrientedCylinder>,
+    cones: Vec<OrientedCone>,
+    triangles: Vec<[Vec3; 3]>,
+    framed_spheres: Vec<Sphere>,
+    framed_cuboids: Vec<Cuboid>,
+    framed_cylinders: Vec<Cylinder>,
+    framed_cones: Vec<Cone>,
+}
+
+/// Shape `number` of the scene, in object coordinates, with its run.
+pub fn written_shape<'a>(runs: &'a [Run], files: &[SceneFile], number: u32) -> (usize, &'a Run, Shape) {
+    let index = run_of(runs, number);
+    let run = &runs[index];
+    let entry = (run.first + (number - run.first_shape)) as usize;
+    // Resolving has checked that every entry of a run is a shape.
+    let shape = files[run.file.0 as usize].shape(run.kind, entry).expect("a resolved run names shapes only");
+    (index, run, shape)
+}
+
+/// The run that holds shape `number`.
+pub fn run_of(runs: &[Run], number: u32) -> usize {
+    runs.partition_point(|run| run.first_shape <= number) - 1
+}
+
+impl Shapes {
+    /// Starts with the scene's lists, without any shape baked.
+    pub fn new(runs: Vec<Run>, frames: Vec<Transform>, files: Vec<SceneFile>) -> Self {
+        Self { runs, frames, files, ..Self::default() }
+    }
+
+    /// Makes room for `count` shapes.
+    pub fn reserve(&mut self, count: usize) {
+        self.slots.reserve_exact(count);
+        self.numbers.reserve_exact(count);
+        self.materials.reserve_exact(count);
+        if self.runs.len() > 1 {
+            self.runs_of.reserve_exact(count);
+        }
+    }
+
+    /// Appends shape `number` at the next position. `material` turns the run and the number written there into the
+    /// scene's material number.
+    pub fn push(&mut self, number: u32, material: impl Fn(&Run, i32) -> u32) {
+        let (run_index, run, shape) = written_shape(&self.runs, &self.files, number);
+        let entry = (run.first + (number - run.first_shape)) as usize;
+        let written = self.files[run.file.0 as usize].shape_materials(run.kind)[entry];
+        self.materials.push(material(run, written));
+        self.numbers.push(number);
+        let frame = run.frame as usize;
+        if self.runs.len() > 1 {
+            self.runs_of.push(run_index as u32);
+        }
+        let slot = self.bake(&shape, frame);
+        self.slots.push(slot);
+    }
+
+    fn bake(&mut self, shape: &Shape, frame: usize) -> Slot {
+        let transform = self.frames[frame];
+        let world_from_object = &transform.world_from_object;
+        let similarity = if frame == 0 { Some(1.0) } else { transform.similarity_scale() };
+        fn put<T>(list: &mut Vec<T>, form: Form, value: T) -> Slot {
+            list.push(value);
+            Slot::new(form, list.len() - 1)
+        }
+        match shape {
+            Shape::Sphere(sphere) => {
+                let in_world = similarity.and_then(|scale| {
+                    Sphere::new(world_from_object.transform_point3(sphere.center()), sphere.radius() * scale).ok()
+                });
+                match in_world {
+                    Some(sphere) => put(&mut self.spheres, Form::Sphere, sphere),
+                    None => put(&mut self.framed_spheres, Form::FramedSphere, *sphere),
+                }
+            }
+            Shape::Cuboid(cuboid) => match axis_aligned(cuboid, &transform) {
+                Some(cuboid) => put(&mut self.cuboids, Form::Cuboid, cuboid),
+                None => put(&mut self.framed_cuboids, Form::FramedCuboid, *cuboid),
+            },
+            Shape::Cylinder(cylinder) => match similarity {
+                Some(scale) => put(
+                    &mut self.cylinders,
+                    Form::Cylinder,
+                    OrientedCylinder::from_object(cylinder, world_from_object, scale),
+                ),
+                None => put(&mut self.framed_cylinders, Form::FramedCylinder, *cylinder),
+            },
+            Shape::Cone(cone) => match similarity {
+                Some(scale) => {
+                    put(&mut self.cones, Form::Cone, OrientedCone::from_object(cone, world_from_object, scale))
+                }
+                None => put(&mut self.framed_cones, Form::FramedCone, *cone),
+            },
+            Shape::Triangle(triangle) => {
+                let vertices = triangle.vertices().map(|v| world_from_object.transform_point3(v));
+                put(&mut self.triangles, Form::Triangle, vertices)
+            }
+        }
+    }
+
+    /// How many positions there are.
+    pub fn len(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Whether there is no shape.
+    pub fn is_empty(&self) -> bool {
+        self.slots.is_empty()
+    }
+
+    /// Whether any triangle is there (then rays carry a [`TriangleRay`]).
+    pub fn has_triangles(&self) -> bool {
+        !self.triangles.is_empty()
+    }
+
+    /// The shape's number in file order.
+    #[inline]
+    pub fn number(&self, position: u32) -> u32 {
+        self.numbers[position as usize]
+    }
+
+    /// The shape's material.
+    #[inline]
+    pub fn material(&self, position: u32) -> u32 {
+        self.materials[position as usize]
+    }
+
+    /// The run that the shape stands in.
+    #[inline]
+    pub fn run(&self, position: u32) -> &Run {
+        &self.runs[self.runs_of.get(position as usize).map_or(0, |&run| run as usize)]
+    }
+
+    /// The transform of the shape's groups.
+    #[inline]
+    pub fn frame(&self, position: u32) -> &Transform {
+        &self.frames[self.run(position).frame as usize]
+    }
+
+    /// The files as written.
+    pub fn files(&self) -> &[SceneFile] {
+        &self.files
+    }
+
+    /// All crossings of the ray's line with the shape at `position`. `triangle_ray` is the ray, prepared once.
+    #[inline(always)]
+    pub fn crossings(&self, position: u32, ray: &Ray, triangle_ray: &TriangleRay) -> Crossings {
+        let slot = self.slots[position as usize];
+        let index = slot.index();
+        match slot.form() {
+            Form::Sphere => self.spheres[index].crossings(ray),
+            Form::Triangle => match triangle_ray.intersect(&self.triangles[index]) {
+                Some(t) => Crossings::one(Hit { t, face: 0 }),
+                None => Crossings::NONE,
+            },
+            Form::Cuboid => self.cuboids[index].crossings(ray),
+            Form::Cylinder => self.cylinders[index].crossings(ray),
+            Form::Cone => self.cones[index].crossings(ray),
+            form @ (Form::FramedSphere | Form::FramedCuboid | Form::FramedCylinder | Form::FramedCone) => {
+                self.framed_crossings(form, index, position, ray)
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn framed_crossings(&self, form: Form, index: usize, position: u32, ray: &Ray) -> Crossings {
+        let ray_in_object = ray.transformed(&self.frame(position).object_from_world);
+        match form {
+            Form::FramedSphere => self.framed_spheres[index].crossings(&ray_in_object),
+            Form::FramedCuboid => self.framed_cuboids[index].crossings(&ray_in_object),
+            Form::FramedCylinder => self.framed_cylinders[index].crossings(&ray_in_object),
+            Form::FramedCone => self.framed_cones[index].crossings(&ray_in_object),
+            Form::Sphere | Form::Cuboid | Form::Cylinder | Form::Cone | Form::Triangle => Crossings::NONE,
+        }
+    }
+
+    /// The surface where `ray` met the shape at `position`.
+    pub fn surface(&self, position: u32, ray: &Ray, hit: Hit) -> WorldSurface {
+        let (_, run, shape) = written_shape(&self.runs, &self.files, self.number(position));
+        let frame = &self.frames[run.frame as usize];
+        if let Shape::Triangle(triangle) = &shape {
+            return self.triangle_surface(position, triangle, frame, ray);
+        }
+        if run.frame == 0 {
+            let in_object = shape.surface(ray, hit);
+            let (point, geometric_normal) = (in_object.point, in_object.geometric_normal);
+            return WorldSurface { point, geometric_normal, in_object };
+        }
+        let in_object = shape.surface(&ray.transformed(&frame.object_from_world), hit);
+        WorldSurface {
+            point: frame.world_from_object.transform_point3(in_object.point),
+            geometric_normal: frame.world_normal(in_object.geometric_normal),
+            in_object,
+        }
+    }
+
+    /// A triangle was met in the world, so its barycentric coordinates are those of the world's corners.
+    fn triangle_surface(&self, position: u32, triangle: &Triangle, frame: &Transform, ray: &Ray) -> WorldSurface {
+        let corners = &self.triangles[self.slots[position as usize].index()];
+        let weights = TriangleRay::new(ray).barycentric(corners);
+        let in_object = triangle.surface_at(weights);
+        WorldSurface {
+            point: corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2],
+            geometric_normal: frame.world_normal(in_object.geometric_normal),
+            in_object,
+        }
+    }
+
+    /// The bytes of the baked arrays, and of the lists as written that are kept.
+    pub fn memory(&self) -> (u64, u64) {
+        fn bytes<T>(list: &[T]) -> u64 {
+            size_of_val(list) as u64
+        }
+        let baked = bytes(&self.slots)
+            + bytes(&self.numbers)
+            + bytes(&self.materials)
+            + bytes(&self.runs_of)
+            + bytes(&self.runs)
+            + bytes(&self.frames)
+            + bytes(&self.spheres)
+            + bytes(&self.cuboids)
+            + bytes(&self.cylinders)
+            + bytes(&self.cones)
+            + bytes(&self.triangles)
+            + bytes(&self.framed_spheres)
+            + bytes(&self.framed_cuboids)
+            + bytes(&self.framed_cylinders)
+            + bytes(&self.framed_cones);
+        let written = self
+            .files
+            .iter()
+            .map(|file| {
+                bytes(&file.spheres.shapes)
+                    + bytes(&file.cuboids.shapes)
+                    + bytes(&file.cylinders.shapes)
+                    + bytes(&file.cones.shapes)
+                    + bytes(&file.triangles.shapes)
+                    + bytes(&file.indexed_triangles.shapes)
+                    + bytes(&file.vertices)
+            })
+            .sum();
+        (baked, written)
+    }
+}
+
+/// The box as a box of the world, where the frame only moves and stretches along the axes.
+fn axis_aligned(cuboid: &Cuboid, frame: &Transform) -> Option<Cuboid> {
+    let m = &frame.world_from_object.matrix3;
+    let diagonal = Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z);
+    let off_diagonal = [m.x_axis.y, m.x_axis.z, m.y_axis.x, m.y_axis.z, m.z_axis.x, m.z_axis.y];
+    if off_diagonal.iter().any(|&v| v != 0.0) || !diagonal.cmpgt(Vec3::ZERO).all() {
+        return None;
+    }
+    let center = frame.world_from_object.transform_point3(cuboid.center());
+    Cuboid::new(center, cuboid.size() * diagonal).ok()
+}

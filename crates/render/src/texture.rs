@@ -1,0 +1,93 @@
+//! Images that materials name, and how they are read (SPEC 7).
+
+use crate::options::TextureFilter;
+use dotray_geometry::Vec2;
+use dotray_geometry::Vec3;
+use dotray_image::Image;
+
+/// A picture whose texels are looked up by (s, t): (0, 0) is the upper left, s runs right, t runs down, both wrap.
+#[derive(Debug)]
+pub struct Texture {
+    image: Image,
+}
+
+/// The texel left of (or at) a coordinate that wraps, its right neighbour, and the weight of the latter.
+fn between(coordinate: f64, size: usize) -> (usize, usize, f64) {
+    let place = (coordinate - coordinate.floor()) * size as f64 - 0.5;
+    let left = place.floor();
+    let index = if left < 0.0 { size - 1 } else { (left as usize).min(size - 1) };
+    (index, if index + 1 == size { 0 } else { index + 1 }, place - left)
+}
+
+impl Texture {
+    /// A texture of this picture; an alpha channel is ignored.
+    pub fn new(image: Image) -> Self {
+        Self { image }
+    }
+
+    /// The bytes it holds.
+    pub fn memory(&self) -> u64 {
+        std::mem::size_of_val(self.image.samples()) as u64
+    }
+
+    fn texel(&self, x: usize, y: usize) -> Vec3 {
+        self.image.pixel(x, y).map_or(Vec3::ZERO, |[r, g, b, _]| Vec3::new(r.into(), g.into(), b.into()))
+    }
+
+    /// The colour at (s, t).
+    pub fn color(&self, st: Vec2, filter: TextureFilter) -> Vec3 {
+        if !st.is_finite() {
+            return self.texel(0, 0);
+        }
+        let (width, height) = (self.image.width(), self.image.height());
+        match filter {
+            TextureFilter::Nearest => {
+                let index = |c: f64, size: usize| (((c - c.floor()) * size as f64) as usize).min(size - 1);
+                self.texel(index(st.x, width), index(st.y, height))
+            }
+            TextureFilter::Bilinear => {
+                let ((left, right, u), (up, down, v)) = (between(st.x, width), between(st.y, height));
+                let upper = self.texel(left, up) * (1.0 - u) + self.texel(right, up) * u;
+                let lower = self.texel(left, down) * (1.0 - u) + self.texel(right, down) * u;
+                upper * (1.0 - v) + lower * v
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dotray_image::Channels;
+
+    fn texture() -> Texture {
+        // Red, green above blue, white.
+        let samples = vec![1., 0., 0., 0., 1., 0., 0., 0., 1., 1., 1., 1.];
+        Texture::new(Image::from_samples(2, 2, Channels::Rgb, samples).expect("valid size"))
+    }
+
+    #[test]
+    fn centres_corners_and_wrap() {
+        let t = texture();
+        for filter in [TextureFilter::Bilinear, TextureFilter::Nearest] {
+            assert_eq!(t.color(Vec2::new(0.25, 0.25), filter), Vec3::X);
+            assert_eq!(t.color(Vec2::new(0.75, 0.25), filter), Vec3::Y);
+            assert_eq!(t.color(Vec2::new(0.25, 0.75), filter), Vec3::Z);
+            assert_eq!(t.color(Vec2::new(-1.25, 7.75), filter), Vec3::ONE);
+        }
+        // The corner lies between all four, which wrap around it.
+        assert_eq!(t.color(Vec2::ZERO, TextureFilter::Bilinear), Vec3::splat(0.5));
+        assert_eq!(t.color(Vec2::new(0.5, 0.25), TextureFilter::Bilinear), Vec3::new(0.5, 0.5, 0.0));
+        assert_eq!(t.color(Vec2::ZERO, TextureFilter::Nearest), Vec3::X);
+    }
+
+    #[test]
+    fn extremes_do_not_panic() {
+        let t = texture();
+        for x in [1e300, -1e300, -1e-300, 0.999_999_999_999_999_9, f64::INFINITY, -0.0] {
+            for filter in [TextureFilter::Bilinear, TextureFilter::Nearest] {
+                assert!(t.color(Vec2::new(x, x), filter).is_finite());
+            }
+        }
+    }
+}

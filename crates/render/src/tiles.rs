@@ -1,0 +1,297 @@
+//! The picture, tile by tile: order, threads, progress, cancelling.
+
+use crate::camera::Camera;
+use crate::error::RenderError;
+use crate::options::Antialias;
+use crate::options::Crop;
+use crate::options::Options;
+use crate::sampler;
+use crate::sampler::Block;
+use crate::sampler::LatticePoint;
+use crate::stats::MemoryPart;
+use crate::stats::Stats;
+use crate::trace::Tracer;
+use crate::world::World;
+use dotray_geometry::Ray;
+use dotray_geometry::Vec3;
+use dotray_image::Channels;
+use dotray_image::Image;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Condvar;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::time::Instant;
+
+/// How far a picture has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Pixels that are finished.
+    pub finished_pixels: u64,
+    /// All pixels.
+    pub total_pixels: u64,
+}
+
+/// Somebody who watches a picture being made and may stop it.
+pub trait Observer: Sync {
+    /// A tile is finished; called from any thread.
+    fn tile_finished(&self, progress: &Progress) {
+        let _ = progress;
+    }
+
+    /// Whether to stop; asked before each tile.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody watches.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Observer for Silent {}
+
+/// A picture and what it cost.
+#[derive(Debug)]
+pub struct Rendering {
+    /// The window's pixels, upper row first; black where the work was cancelled before.
+    pub image: Image,
+    /// Counts, bytes, seconds.
+    pub stats: Stats,
+    /// Whether every tile was computed.
+    pub complete: bool,
+}
+
+/// What tiles write into.
+struct Film {
+    image: Image,
+    stats: Stats,
+    finished_pixels: u64,
+}
+
+/// Makes the picture.
+///
+/// # Errors
+/// Options that make no sense, a picture too large for memory, threads that cannot be started.
+pub fn render(world: &World, options: &Options, observer: &dyn Observer) -> Result<Rendering, RenderError> {
+    options.validate()?;
+    let start = Instant::now();
+    let window = options.window();
+    let image = Image::new(window.width as usize, window.height as usize, Channels::Rgb).map_err(|error| {
+        RenderError::Film { width: window.width, height: window.height, reason: error.to_string() }
+    })?;
+    let film_bytes = size_of_val(image.samples()) as u64;
+    let film = Mutex::new(Film { image, stats: Stats::default(), finished_pixels: 0 });
+    let job = Job {
+        world,
+        options,
+        camera: Camera::new(&world.camera, options.width, options.height),
+        window,
+        borders: Borders::default(),
+        film,
+        observer,
+    };
+    let tiles = tiles(options, window);
+    let run = || tiles.par_iter().with_max_len(1).map(|tile| job.tile(*tile)).reduce(|| true, |a, b| a && b);
+    let complete = match options.threads {
+        None => run(),
+        Some(threads) => rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?
+            .install(run),
+    };
+    let Film { image, mut stats, .. } = job.film.into_inner().unwrap_or_else(PoisonError::into_inner);
+    stats.memory = world.memory();
+    stats.memory.push(MemoryPart { name: "film", bytes: film_bytes });
+    stats.seconds = world.seconds().to_vec();
+    stats.seconds.push(("trace", start.elapsed().as_secs_f64()));
+    Ok(Rendering { image, stats, complete })
+}
+
+/// The window in tiles along a Morton curve, so that tiles computed one after another look at the same part of the
+/// scene. The grid of tiles starts at the picture's lower left corner.
+fn tiles(options: &Options, window: Crop) -> Vec<Block> {
+    let size = options.tile_size;
+    let bottom = options.height - window.y - window.height;
+    let columns = window.x / size..(window.x + window.width).div_ceil(size);
+    let rows = bottom / size..(bottom + window.height).div_ceil(size);
+    let mut tiles: Vec<(u64, Block)> = Vec::new();
+    for row in rows {
+        for column in columns.clone() {
+            let (left, low) = ((column * size).max(window.x), (row * size).max(bottom));
+            let right = ((column + 1) * size).min(window.x + window.width);
+            let high = ((row + 1) * size).min(bottom + window.height);
+            let block = Block { x: left, y: low, width: right - left, height: high - low };
+            tiles.push((spread(column) | spread(row) << 1, block));
+        }
+    }
+    tiles.sort_by_key(|(key, _)| *key);
+    tiles.into_iter().map(|(_, block)| block).collect()
+}
+
+/// The bits of a number on every other place.
+fn spread(number: u32) -> u64 {
+    (0..32).fold(0, |sum, bit| sum | u64::from(number >> bit & 1) << (2 * bit))
+}
+
+struct Job<'a> {
+    world: &'a World,
+    options: &'a Options,
+    camera: Camera,
+    window: Crop,
+    borders: Borders,
+    film: Mutex<Film>,
+    observer: &'a dyn Observer,
+}
+
+impl Job<'_> {
+    /// Computes a tile and stores it; false where the work was cancelled before.
+    fn tile(&self, block: Block) -> bool {
+        if self.observer.cancelled() {
+            return false;
+        }
+        let mut tracer = Tracer::new(self.world, self.options, dotray_accel::simd::level());
+        let colors = match self.options.antialias {
+            Antialias::None => self.grid(block, 1, &mut tracer),
+            Antialias::Grid(n) => self.grid(block, n, &mut tracer),
+            Antialias::Adaptive { threshold, depth } => self.adaptive(block, threshold, depth, &mut tracer),
+        };
+        self.store(block, &colors, &tracer.stats);
+        true
+    }
+
+    fn grid(&self, block: Block, n: u32, tracer: &mut Tracer<'_>) -> Vec<Vec3> {
+        // A row of pixels at a time keeps the samples of a fine grid from filling memory.
+        let mut colors = Vec::new();
+        let rows_at_once = if n == 1 { block.height } else { 1 };
+        for row in (0..block.height).step_by(rows_at_once as usize) {
+            let rows = Block { y: block.y + row, height: rows_at_once, ..block };
+            let places = sampler::grid_places(rows, n);
+            let rays: Vec<Ray> = places.iter().map(|&(x, y)| self.camera.ray(x, y)).collect();
+            colors.append(&mut sampler::grid_means(&tracer.colors(&rays), n));
+        }
+        colors
+    }
+
+    fn adaptive(&self, block: Block, threshold: f64, depth: u32, tracer: &mut Tracer<'_>) -> Vec<Vec3> {
+        let edge = 1u64 << depth;
+        let scale = 1.0 / edge as f64;
+        let (left, right) = (u64::from(block.x) * edge, u64::from(block.x + block.width) * edge);
+        let (low, high) = (u64::from(block.y) * edge, u64::from(block.y + block.height) * edge);
+        let on_border = |p: &LatticePoint| p.x == left || p.x == right || p.y == low || p.y == high;
+        let mut trace = |points: &[LatticePoint]| {
+            let rays: Vec<Ray> =
+                points.iter().map(|p| self.camera.ray(p.x as f64 * scale, p.y as f64 * scale)).collect();
+            tracer.colors(&rays)
+        };
+        sampler::adaptive(block, threshold, depth, |points| self.borders.share(points, on_border, &mut trace))
+    }
+
+    fn store(&self, block: Block, colors: &[Vec3], stats: &Stats) {
+        let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
+        for ((i, j), color) in block.pixels().zip(colors) {
+            let x = (i - self.window.x) as usize;
+            let y = (self.options.height - 1 - j - self.window.y) as usize;
+            film.image.set_pixel(x, y, [color.x as f32, color.y as f32, color.z as f32, 1.0]);
+        }
+        film.stats.add_counts(stats);
+        film.finished_pixels += u64::from(block.width) * u64::from(block.height);
+        let progress = Progress {
+            finished_pixels: film.finished_pixels,
+            total_pixels: u64::from(self.window.width) * u64::from(self.window.height),
+        };
+        drop(film);
+        self.observer.tile_finished(&progress);
+    }
+}
+
+/// Samples on the borders of tiles, so that two tiles that share one trace it once. `None` is a claim: some tile
+/// is about to publish the colour.
+#[derive(Default)]
+struct Borders {
+    known: Mutex<HashMap<LatticePoint, Option<Vec3>>>,
+    published: Condvar,
+}
+
+/// A tile's claims; given up should the tile fail before it publishes, so that nobody waits for ever.
+struct Claims<'a> {
+    borders: &'a Borders,
+    points: Vec<LatticePoint>,
+}
+
+impl Drop for Claims<'_> {
+    fn drop(&mut self) {
+        let mut known = self.borders.known.lock().unwrap_or_else(PoisonError::into_inner);
+        for point in &self.points {
+            if known.get(point) == Some(&None) {
+                known.remove(point);
+            }
+        }
+        self.borders.published.notify_all();
+    }
+}
+
+impl Borders {
+    /// The colours of `points`: those that nobody has claimed are traced and published, the others are waited for.
+    /// A tile publishes what it has claimed before it waits, so two tiles never wait for each other.
+    fn share(
+        &self,
+        points: &[LatticePoint],
+        on_border: impl Fn(&LatticePoint) -> bool,
+        trace: &mut impl FnMut(&[LatticePoint]) -> Vec<Vec3>,
+    ) -> Vec<Vec3> {
+        let mut colors: Vec<Option<Vec3>> = vec![None; points.len()];
+        let (mine, claims) = self.claim(points, on_border);
+        let wanted: Vec<LatticePoint> = mine.iter().map(|&index| points[index]).collect();
+        for (&index, color) in mine.iter().zip(trace(&wanted)) {
+            colors[index] = Some(color);
+        }
+        self.publish(claims, points.iter().zip(&colors));
+        let color = |(point, color): (&LatticePoint, Option<Vec3>)| {
+            color.or_else(|| self.wait_for(point)).unwrap_or_else(|| trace(&[*point])[0])
+        };
+        points.iter().zip(colors).map(color).collect()
+    }
+
+    /// The indices of the points that the caller traces, with its claims on those that others may want.
+    fn claim(&self, points: &[LatticePoint], on_border: impl Fn(&LatticePoint) -> bool) -> (Vec<usize>, Claims<'_>) {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut claims = Claims { borders: self, points: Vec::new() };
+        let mut mine = Vec::with_capacity(points.len());
+        for (index, point) in points.iter().enumerate() {
+            if on_border(point) {
+                if known.contains_key(point) {
+                    continue;
+                }
+                known.insert(*point, None);
+                claims.points.push(*point);
+            }
+            mine.push(index);
+        }
+        (mine, claims)
+    }
+
+    fn publish<'p>(&self, claims: Claims<'_>, colors: impl Iterator<Item = (&'p LatticePoint, &'p Option<Vec3>)>) {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        for (point, color) in colors {
+            if let Some(entry @ None) = known.get_mut(point) {
+                *entry = *color;
+            }
+        }
+        drop(known);
+        drop(claims);
+    }
+
+    /// The colour that another tile publishes; `None` where it gave up.
+    fn wait_for(&self, point: &LatticePoint) -> Option<Vec3> {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            match known.get(point) {
+                Some(Some(color)) => return Some(*color),
+                Some(None) => known = self.published.wait(known).unwrap_or_else(PoisonError::into_inner),
+                None => return None,
+            }
+        }
+    }
+}

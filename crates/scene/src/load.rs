@@ -1,0 +1,326 @@
+//! A file and all that it includes, to one scene.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used)]
+
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Severity;
+use crate::diagnostic::Sink;
+use crate::directive;
+use crate::files::Files;
+use crate::model::Scene;
+use crate::model::SceneFile;
+use crate::parse;
+use crate::parse::NOT_LOADED;
+use crate::sources::Sources;
+use crate::span::FileId;
+use crate::span::Span;
+use std::collections::HashMap;
+use std::io;
+use std::path::Path;
+use std::path::PathBuf;
+
+pub use crate::parse::Limits;
+
+/// What the caller may choose.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// Bounds on what a file may make the reader do.
+    pub limits: Limits,
+    /// Where included files are looked for that do not stand beside the file that names them; `None` is the
+    /// process's own working directory.
+    pub working_directory: Option<PathBuf>,
+}
+
+/// What reading gives.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The scene; `None` where there was any error.
+    pub scene: Option<Scene>,
+    /// Errors and warnings in the order of files and places.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The text that the diagnostics point into.
+    pub sources: Sources,
+}
+
+/// Reads the file at `path` and all that it includes. Everything that is wrong, be it that the file cannot be read,
+/// is told in the diagnostics.
+pub fn load(path: &Path, files: &dyn Files, options: &LoadOptions) -> Loaded {
+    let mut loader = Loader::new(files, options);
+    match files.read_at_most(path, options.limits.max_file_bytes) {
+        Ok(bytes) => loader.run(path.to_owned(), bytes),
+        Err(fault) => loader.cannot_read(path, &fault),
+    }
+    loader.finish()
+}
+
+/// Reads a scene from memory; `name` stands for the path of its file. Included files are read by `files`.
+///
+/// ```
+/// use dotray_scene::files::Disk;
+/// use dotray_scene::load::{LoadOptions, load_text};
+///
+/// let loaded = load_text("ball.ray", "#shape_sphere -1  0 0 0  1", &Disk, &LoadOptions::default());
+/// let scene = loaded.scene.expect("the text has no errors");
+/// assert_eq!(scene.files[0].spheres.shapes.len(), 1);
+/// ```
+pub fn load_text(name: &str, text: impl Into<Vec<u8>>, files: &dyn Files, options: &LoadOptions) -> Loaded {
+    let mut loader = Loader::new(files, options);
+    loader.run(PathBuf::from(name), text.into());
+    loader.finish()
+}
+
+/// How a file came to be read.
+struct Reached {
+    /// The `#ray_file` that named it first; `None` for the file asked for.
+    by: Option<Span>,
+    depth: usize,
+}
+
+struct Loader<'a> {
+    files: &'a dyn Files,
+    options: &'a LoadOptions,
+    sink: Sink,
+    sources: Sources,
+    scene: Scene,
+    reached: Vec<Reached>,
+    /// The numbers of the files by their identities.
+    known: HashMap<PathBuf, FileId>,
+}
+
+impl<'a> Loader<'a> {
+    fn new(files: &'a dyn Files, options: &'a LoadOptions) -> Self {
+        let Limits { max_errors, max_warnings_of_a_kind, .. } = options.limits;
+        Self {
+            files,
+            options,
+            sink: Sink::new(max_errors, max_warnings_of_a_kind),
+            sources: Sources::default(),
+            scene: Scene::default(),
+            reached: Vec::new(),
+            known: HashMap::new(),
+        }
+    }
+
+    /// Reads the file asked for, then, one after the other, those that come to be known.
+    fn run(&mut self, path: PathBuf, bytes: Vec<u8>) {
+        self.take(path, bytes, Reached { by: None, depth: 0 });
+        let mut next = 0;
+        while next < self.reached.len() && !self.sink.is_full() {
+            let file = FileId(next as u32);
+            let path = self.sources.path(file).to_owned();
+            let limits = &self.options.limits;
+            let parsed = parse::parse(path, self.sources.bytes(file), file, limits, &mut self.sink);
+            self.scene.files.push(parsed);
+            self.find_includes(next);
+            next += 1;
+        }
+        self.refuse_cycles();
+    }
+
+    fn take(&mut self, path: PathBuf, bytes: Vec<u8>, reached: Reached) -> FileId {
+        let identity = self.files.identity(&path);
+        let file = self.sources.add(path, bytes);
+        self.known.insert(identity, file);
+        self.reached.push(reached);
+        file
+    }
+
+    fn find_includes(&mut self, of: usize) {
+        let count = self.scene.files.get(of).map_or(0, |file| file.includes.len());
+        for number in 0..count {
+            let Some(include) = self.scene.files.get(of).and_then(|file| file.includes.get(number)) else {
+                return;
+            };
+            let (name, span) = (include.value.name.clone(), include.span);
+            let found = self.find_include(&name, span);
+            let include = self.scene.files.get_mut(of).and_then(|file| file.includes.get_mut(number));
+            if let (Some(include), Some(found)) = (include, found) {
+                include.value.file = found;
+            }
+            if self.sink.is_full() {
+                return;
+            }
+        }
+    }
+
+    fn find_include(&mut self, name: &str, span: Span) -> Option<FileId> {
+        let candidates =
+            candidates(self.sources.path(span.file), name, self.options.working_directory.as_deref());
+        if let Some(known) = candidates.iter().find_map(|path| self.known.get(&self.files.identity(path))) {
+            return Some(*known);
+        }
+        let depth = self.reached.get(span.file.0 as usize).map_or(0, |reached| reached.depth) + 1;
+        let Limits { max_file_bytes, max_include_depth, max_includes, .. } = self.options.limits;
+        if depth > max_include_depth || self.reached.len() >= max_includes {
+            let message = match depth > max_include_depth {
+                true => format!("files include each other more than {max_include_depth} deep"),
+                false => format!("the scene has more than {max_includes} files"),
+            };
+            self.sink.error(Diagnostic::error("include-limit", message).at(span).label("is not read"));
+            return None;
+        }
+        let mut tried = Vec::new();
+        for path in candidates {
+            match self.files.read_at_most(&path, max_file_bytes) {
+                Ok(bytes) => return Some(self.take(path, bytes, Reached { by: Some(span), depth })),
+                Err(fault) => tried.push((path, fault)),
+            }
+        }
+        self.sink.error(self.not_found(name, span, &tried));
+        None
+    }
+
+    fn not_found(&self, name: &str, span: Span, tried: &[(PathBuf, io::Error)]) -> Diagnostic {
+        let is_missing = |fault: &io::Error| fault.kind() == io::ErrorKind::NotFound;
+        let too_large = tried.iter().find(|(_, fault)| fault.kind() == io::ErrorKind::FileTooLarge);
+        if let Some((path, _)) = too_large {
+            return too_large_error(path, &self.options.limits).at(span).label("is not read");
+        }
+        let error = match tried.iter().find(|(_, fault)| !is_missing(fault)) {
+            Some((path, fault)) => {
+                Diagnostic::error("cannot-read", format!("cannot read `{}`: {fault}", path.display()))
+            }
+            None => {
+                Diagnostic::error("include-not-found", format!("the included file `{name}` was not found"))
+            }
+        };
+        let error = error.at(span).label("named here");
+        let error =
+            tried.iter().fold(error, |error, (path, _)| error.note(format!("tried `{}`", path.display())));
+        match tried.iter().filter(|(_, fault)| is_missing(fault)).find_map(|(path, _)| self.similar(path)) {
+            Some(similar) => error.help(format!("there is a file `{similar}`")),
+            None => error,
+        }
+    }
+
+    fn cannot_read(&mut self, path: &Path, fault: &io::Error) {
+        if fault.kind() == io::ErrorKind::FileTooLarge {
+            return self.sink.error(too_large_error(path, &self.options.limits));
+        }
+        let error = Diagnostic::error("cannot-read", format!("cannot read `{}`: {fault}", path.display()));
+        self.sink.error(match self.similar(path).filter(|_| fault.kind() == io::ErrorKind::NotFound) {
+            Some(similar) => error.help(format!("there is a file `{similar}`")),
+            None => error,
+        });
+    }
+
+    /// A file in the same folder whose name is nearly that of `path`.
+    fn similar(&self, path: &Path) -> Option<String> {
+        const LONGEST: usize = 64;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let wanted = path.file_name()?.to_str()?.to_ascii_lowercase();
+        let near = (wanted.len() / 4).clamp(1, 4);
+        let names =
+            self.files.names_in(folder).into_iter().filter(|name| name.len().max(wanted.len()) <= LONGEST);
+        let distances = names.map(|name| {
+            let distance = directive::edit_distance(name.to_ascii_lowercase().as_bytes(), wanted.as_bytes());
+            (distance, name)
+        });
+        let (_, name) = distances.min().filter(|(distance, _)| *distance <= near)?;
+        Some(folder.join(name).display().to_string())
+    }
+
+    /// Walks the files' includes depth first, without a stack of calls.
+    fn refuse_cycles(&mut self) {
+        let mut state = vec![State::Fresh; self.scene.files.len()];
+        for root in 0..state.len() {
+            if state.get(root) != Some(&State::Fresh) {
+                continue;
+            }
+            // The files on the way and which of their includes comes next.
+            let mut way: Vec<(usize, usize)> = vec![(root, 0)];
+            while let Some((file, next)) = way.last_mut() {
+                let (from, number) = (*file, *next);
+                *next += 1;
+                set(&mut state, from, State::OnTheWay);
+                let include = self.scene.files.get(from).and_then(|file| file.includes.get(number));
+                let Some(include) = include else {
+                    set(&mut state, from, State::Done);
+                    way.pop();
+                    continue;
+                };
+                let (to, span) = (include.value.file.0 as usize, include.span);
+                match state.get(to) {
+                    Some(State::Fresh) => way.push((to, 0)),
+                    Some(State::OnTheWay) => {
+                        let error = self.cycle(&way, to, span);
+                        self.sink.error(error);
+                    }
+                    Some(State::Done) | None => {}
+                }
+            }
+        }
+    }
+
+    fn cycle(&self, way: &[(usize, usize)], to: usize, span: Span) -> Diagnostic {
+        const SHOWN: usize = 8;
+        let path = |file: usize| format!("`{}`", self.sources.path(FileId(file as u32)).display());
+        let ring = way.iter().map(|(file, _)| *file).skip_while(|&file| file != to).chain([to]);
+        let mut chain: Vec<String> = ring.map(path).collect();
+        if chain.len() > SHOWN {
+            let end = chain.split_off(chain.len() - SHOWN / 2);
+            chain.truncate(SHOWN / 2);
+            chain.push("…".to_owned());
+            chain.extend(end);
+        }
+        Diagnostic::error("include-cycle", format!("{} includes itself", path(to)))
+            .at(span)
+            .label("closes the circle")
+            .note(format!("the chain is {}", chain.join(" → ")))
+    }
+
+    fn finish(mut self) -> Loaded {
+        let failed = self.sink.errors() > 0;
+        let mut diagnostics = self.sink.finish();
+        for diagnostic in &mut diagnostics {
+            let mut file = diagnostic.span.map_or(FileId(0), |span| span.file);
+            // Long chains are of no use to a reader.
+            for _ in 0..8 {
+                let Some(by) = self.reached.get(file.0 as usize).and_then(|reached| reached.by) else {
+                    break;
+                };
+                diagnostic.notes.push((None, format!("included from {}", self.sources.place(by))));
+                file = by.file;
+            }
+        }
+        debug_assert_eq!(failed, diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error));
+        debug_assert!(failed || self.scene.files.iter().all(is_complete));
+        self.scene.files.iter_mut().for_each(shrink);
+        Loaded { scene: (!failed).then_some(self.scene), diagnostics, sources: self.sources }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    Fresh,
+    OnTheWay,
+    Done,
+}
+
+fn set(state: &mut [State], file: usize, new: State) {
+    if let Some(state) = state.get_mut(file) {
+        *state = new;
+    }
+}
+
+fn is_complete(file: &SceneFile) -> bool {
+    file.includes.iter().all(|include| include.value.file != NOT_LOADED)
+}
+
+/// Lists grow by doubling; what is not used goes back.
+fn shrink(file: &mut SceneFile) {
+    file.vertices.shrink_to_fit();
+    file.items.shrink_to_fit();
+}
+
+fn too_large_error(path: &Path, limits: &Limits) -> Diagnostic {
+    let message = format!("`{}` is larger than {} bytes", path.display(), limits.max_file_bytes);
+    Diagnostic::error("file-too-large", message)
+}
+
+/// Where an included file may be: beside the file that names it, else in the working directory.
+fn candidates(from: &Path, name: &str, working_directory: Option<&Path>) -> Vec<PathBuf> {
+    let beside = from.parent().unwrap_or(Path::new("")).join(name);
+    let working = working_directory.unwrap_or(Path::new("")).join(name);
+    if beside == working { vec![beside] } else { vec![beside, working] }
+}

@@ -1,0 +1,96 @@
+//! `#texture`, `#material`, `#vertex`, `#ray_file`, `#ray_file_instance`.
+
+use super::NOT_LOADED;
+use super::Parser;
+use crate::diagnostic::Diagnostic;
+use crate::model::Include;
+use crate::model::Item;
+use crate::model::Material;
+use crate::model::Placed;
+use crate::model::Vertex;
+use dotray_geometry::Vec2;
+use dotray_geometry::Vec3;
+
+impl Parser<'_> {
+    /// The name or text argument of the directive at hand. Bytes that are no UTF-8 become U+FFFD.
+    fn word(&self) -> String {
+        let inner = self.call.word.map(|token| self.lexer.inner(token)).unwrap_or_default();
+        String::from_utf8_lossy(inner).into_owned()
+    }
+
+    pub(super) fn texture(&mut self) {
+        self.seen.textures += 1;
+        let (value, span) = (self.word(), self.call_span());
+        self.scene.textures.push(Placed { value, span });
+    }
+
+    pub(super) fn material(&mut self) {
+        self.seen.materials += 1;
+        let texture = match self.whole(15) {
+            Some(-1) => None,
+            Some(number) => match u32::try_from(number) {
+                Ok(number) => Some(number),
+                Err(_) => return self.unknown(15, "unknown-texture", "texture", "textures"),
+            },
+            None => return,
+        };
+        let &[ar, ag, ab, dr, dg, db, sr, sg, sb, er, eg, eb, k_specular, k_transmission, ir, ..] =
+            &self.values;
+        if k_transmission > 0.0 && ir <= 0.0 {
+            let message = format!(
+                "the material transmits light (kt is {k_transmission}), but its index of refraction is {ir}"
+            );
+            self.argument_error(14, "index-of-refraction", message, "must be above 0");
+            return;
+        }
+        let value = Material {
+            ambient: Vec3::new(ar, ag, ab),
+            diffuse: Vec3::new(dr, dg, db),
+            specular: Vec3::new(sr, sg, sb),
+            emissive: Vec3::new(er, eg, eb),
+            k_specular,
+            k_transmission,
+            index_of_refraction: ir,
+            texture,
+            text: self.word(),
+        };
+        let span = self.call_span();
+        self.scene.materials.push(Placed { value, span });
+    }
+
+    pub(super) fn vertex(&mut self) {
+        self.seen.vertices += 1;
+        let &[px, py, pz, nx, ny, nz, ts, tt, ..] = &self.values;
+        self.scene.vertices.push(Vertex {
+            position: Vec3::new(px, py, pz),
+            normal: Vec3::new(nx, ny, nz),
+            texcoord: Vec2::new(ts, tt),
+        });
+    }
+
+    pub(super) fn ray_file(&mut self) {
+        self.seen.includes += 1;
+        let (name, span) = (self.word(), self.call_span());
+        self.scene.includes.push(Placed { value: Include { name, file: NOT_LOADED }, span });
+    }
+
+    pub(super) fn instance(&mut self) {
+        let Some(number) = self.whole(0) else { return };
+        match u32::try_from(number) {
+            Ok(number) => {
+                let span = self.arguments_span(0, 1);
+                self.instances.push((number, span));
+                self.push_item(Item::Instance(number));
+            }
+            Err(_) => self.unknown(0, "unknown-include", "included file", "included files"),
+        }
+    }
+
+    /// An argument that is a number of nothing, whatever the file holds.
+    pub(super) fn unknown(&mut self, place: usize, code: &'static str, what: &str, whats: &str) {
+        let message = format!("{} names no {what}", self.written(place));
+        let span = self.arguments_span(place, 1);
+        self.sink
+            .error(Diagnostic::error(code, message).at(span).label(format!("{whats} are numbered from 0")));
+    }
+}

@@ -1,0 +1,95 @@
+//! The shapes of a file by their kind.
+
+use crate::model::SceneFile;
+use crate::model::ShapeKind;
+use crate::span::FileId;
+use crate::span::Span;
+use dotray_geometry::Shape;
+use dotray_geometry::Triangle;
+
+impl ShapeKind {
+    /// Every kind.
+    pub const ALL: [Self; 6] =
+        [Self::Sphere, Self::Cuboid, Self::Cylinder, Self::Cone, Self::Triangle, Self::IndexedTriangle];
+
+    /// The directive that makes such a shape.
+    pub const fn directive(self) -> &'static str {
+        match self {
+            Self::Sphere => "#shape_sphere",
+            Self::Cuboid => "#shape_box",
+            Self::Cylinder => "#shape_cylinder",
+            Self::Cone => "#shape_cone",
+            Self::Triangle | Self::IndexedTriangle => "#shape_triangle",
+        }
+    }
+}
+
+impl SceneFile {
+    /// How many shapes of a kind stand in the file.
+    pub fn shape_count(&self, kind: ShapeKind) -> usize {
+        match kind {
+            ShapeKind::Sphere => self.spheres.shapes.len(),
+            ShapeKind::Cuboid => self.cuboids.shapes.len(),
+            ShapeKind::Cylinder => self.cylinders.shapes.len(),
+            ShapeKind::Cone => self.cones.shapes.len(),
+            ShapeKind::Triangle => self.triangles.shapes.len(),
+            ShapeKind::IndexedTriangle => self.indexed_triangles.shapes.len(),
+        }
+    }
+
+    /// The material numbers of the shapes of a kind, as written.
+    pub fn shape_materials(&self, kind: ShapeKind) -> &[i32] {
+        match kind {
+            ShapeKind::Sphere => &self.spheres.materials,
+            ShapeKind::Cuboid => &self.cuboids.materials,
+            ShapeKind::Cylinder => &self.cylinders.materials,
+            ShapeKind::Cone => &self.cones.materials,
+            ShapeKind::Triangle => &self.triangles.materials,
+            ShapeKind::IndexedTriangle => &self.indexed_triangles.materials,
+        }
+    }
+
+    /// The directive word of a shape; `file` is this file's number.
+    pub fn shape_span(&self, file: FileId, kind: ShapeKind, index: usize) -> Option<Span> {
+        let starts = match kind {
+            ShapeKind::Sphere => &self.spheres.starts,
+            ShapeKind::Cuboid => &self.cuboids.starts,
+            ShapeKind::Cylinder => &self.cylinders.starts,
+            ShapeKind::Cone => &self.cones.starts,
+            ShapeKind::Triangle => &self.triangles.starts,
+            ShapeKind::IndexedTriangle => &self.indexed_triangles.starts,
+        };
+        let start = starts.get(index)?;
+        Some(Span { file, start, end: start + kind.directive().len() as u64 })
+    }
+
+    /// A triangle of three shared vertices; `None` where it has no area or a number names no vertex.
+    pub fn indexed_triangle(&self, corners: [u32; 3]) -> Option<Triangle> {
+        let [a, b, c] = corners.map(|corner| self.vertices.get(corner as usize));
+        let vertices = [a?, b?, c?];
+        let [positions, normals] = [vertices.map(|v| v.position), vertices.map(|v| v.normal)];
+        Triangle::new(positions, normals, vertices.map(|v| v.texcoord)).ok()
+    }
+
+    /// One shape of a kind; `None` beyond the end of the list.
+    #[inline]
+    pub fn shape(&self, kind: ShapeKind, index: usize) -> Option<Shape> {
+        match kind {
+            ShapeKind::Sphere => self.spheres.shapes.get(index).copied().map(Shape::Sphere),
+            ShapeKind::Cuboid => self.cuboids.shapes.get(index).copied().map(Shape::Cuboid),
+            ShapeKind::Cylinder => self.cylinders.shapes.get(index).copied().map(Shape::Cylinder),
+            ShapeKind::Cone => self.cones.shapes.get(index).copied().map(Shape::Cone),
+            ShapeKind::Triangle => self.triangles.shapes.get(index).copied().map(Shape::Triangle),
+            ShapeKind::IndexedTriangle => {
+                let corners = self.indexed_triangles.shapes.get(index).copied()?;
+                self.indexed_triangle(corners).map(Shape::Triangle)
+            }
+        }
+    }
+
+    /// The shapes of a run of this file.
+    pub fn shapes(&self, kind: ShapeKind, first: u32, count: u32) -> impl Iterator<Item = Shape> {
+        let first = first as usize;
+        (first..first + count as usize).filter_map(move |index| self.shape(kind, index))
+    }
+}
