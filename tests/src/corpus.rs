@@ -25,8 +25,10 @@ pub fn shared(path: &str) -> Option<PathBuf> {
 /// The `.ray` files of a folder, by name.
 pub fn scenes_in(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut scenes: Vec<PathBuf> =
-        entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "ray")).collect();
+    let mut scenes: Vec<PathBuf> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|e| e == "ray"))
+        .collect();
     scenes.sort();
     scenes
 }
@@ -60,7 +62,9 @@ pub fn conformance() -> Vec<Case> {
 
 fn case(row: &serde_json::Value, folder: &Path) -> Case {
     let word = |key: &str| row[key].as_str().unwrap_or_else(|| panic!("`{key}` in {row}"));
-    let count = |key: &str| row[key].as_u64().and_then(|n| u32::try_from(n).ok()).unwrap_or_else(|| panic!("`{key}` in {row}"));
+    let count = |key: &str| {
+        row[key].as_u64().and_then(|n| u32::try_from(n).ok()).unwrap_or_else(|| panic!("`{key}` in {row}"))
+    };
     let mut options = Options {
         width: count("width"),
         height: count("height"),

@@ -79,9 +79,9 @@ pub fn bits(image: &Image) -> Vec<u32> {
 /// FNV-1a over the size and the bits of all samples.
 pub fn fingerprint(image: &Image) -> u64 {
     let words = [image.width() as u32, image.height() as u32].into_iter().chain(bits(image));
-    words.flat_map(u32::to_le_bytes).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
+    words
+        .flat_map(u32::to_le_bytes)
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// Where two pictures first differ, in words; `None` where they are the same.

@@ -26,7 +26,8 @@ struct Entry {
 }
 
 fn main() {
-    let entries = corpus::conformance().into_iter().map(|case| Arc::new(Entry { case, brute: OnceLock::new() }));
+    let entries =
+        corpus::conformance().into_iter().map(|case| Arc::new(Entry { case, brute: OnceLock::new() }));
     let trials = entries.flat_map(|entry| {
         Kind::ALL.map(|kind| {
             let (entry, name) = (Arc::clone(&entry), format!("{}::{}", entry.case.name, kind.name()));
@@ -54,7 +55,9 @@ fn test(entry: &Entry, kind: Kind) -> Result<(), Failed> {
     }
     match pictures::difference(brute, actual) {
         None => Ok(()),
-        Some(difference) => Err(explain(entry, kind, brute, actual, &format!("unlike brute force: {difference}"))),
+        Some(difference) => {
+            Err(explain(entry, kind, brute, actual, &format!("unlike brute force: {difference}")))
+        }
     }
 }
 

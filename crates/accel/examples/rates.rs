@@ -146,7 +146,6 @@ fn rate(accelerator: &Accelerator, spheres: &Spheres, queries: &[Query], any: bo
                 hits: 0,
                 sum: 0.0,
                 nearest: f64::INFINITY,
-                leaves: 0,
                 boxes: 0,
             };
             accelerator.walk(level(), &mut rays);

@@ -77,6 +77,7 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
         image_limits: limits,
     };
     let encode = encode_options(typed, format)?;
+    check_jpeg_edge(format, &options)?;
     let (quiet, stats) = (typed.quiet, typed.stats);
     Ok(Plan { input, output, output_is_default, format, encode, options, prepare, quiet, stats })
 }
@@ -218,6 +219,19 @@ fn limits(typed: &RenderArgs, options: &Options) -> Result<Limits, Failure> {
     Ok(Limits { max_pixels, max_bytes: defaults.max_bytes.max(max_pixels.saturating_mul(16)) })
 }
 
+/// The one format whose edges are shorter than those of a picture: told now, not after the rays.
+fn check_jpeg_edge(format: Format, options: &Options) -> Result<(), Failure> {
+    let window = options.window();
+    let longest = window.width.max(window.height);
+    if format == Format::Jpeg && longest > u32::from(u16::MAX) {
+        let most = u16::MAX;
+        return Err(Failure::Usage(format!(
+            "a JPEG has at most {most} columns and rows; asked for are {longest}"
+        )));
+    }
+    Ok(())
+}
+
 fn encode_options(typed: &RenderArgs, format: Format) -> Result<EncodeOptions, Failure> {
     let defaults = EncodeOptions::default();
     if typed.jpeg_quality.is_some() && format != Format::Jpeg {
@@ -242,5 +256,88 @@ fn antialias(typed: &RenderArgs) -> Result<Antialias, Failure> {
             threshold: typed.aa_threshold.unwrap_or(0.1),
             depth: typed.aa_depth.unwrap_or(3),
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::values::FormatName;
+    use crate::values::Size;
+
+    fn planned(change: impl FnOnce(&mut RenderArgs)) -> Result<Plan, String> {
+        let mut typed = RenderArgs { input: Some(PathBuf::from("folder/a.ray")), ..RenderArgs::default() };
+        change(&mut typed);
+        plan(&typed).map_err(|failure| match failure {
+            Failure::Usage(message) => message,
+            other => format!("no usage error: {other:?}"),
+        })
+    }
+
+    fn size_of(change: impl FnOnce(&mut RenderArgs)) -> Result<(u32, u32), String> {
+        planned(change).map(|plan| (plan.options.width, plan.options.height))
+    }
+
+    #[test]
+    fn nothing_said_means_the_defaults() {
+        let plan = planned(|_| ()).unwrap();
+        assert_eq!(plan.output, Place::File(PathBuf::from("a.png")));
+        assert!(plan.output_is_default);
+        assert_eq!((plan.format, plan.options), (Format::Png, Options::default()));
+        let plan = planned(|typed| typed.input = Some("-".into())).unwrap();
+        assert_eq!((plan.input, plan.output, plan.format), (Place::Standard, Place::Standard, Format::Png));
+    }
+
+    #[test]
+    fn one_edge_gives_the_other() {
+        assert_eq!(size_of(|typed| typed.width = Some(800)), Ok((800, 600)));
+        assert_eq!(size_of(|typed| typed.height_value = Some(600)), Ok((800, 600)));
+        assert_eq!(size_of(|typed| typed.width = Some(1)), Ok((1, 1)));
+        assert_eq!(size_of(|typed| typed.size = Some(Size(7, 5))), Ok((7, 5)));
+        assert!(size_of(|typed| typed.width = Some(0)).unwrap_err().contains("width is 0"));
+        assert!(size_of(|typed| typed.height = Some(u32::MAX)).unwrap_err().contains("width is"));
+    }
+
+    #[test]
+    fn said_twice_is_told_with_both() {
+        let message = planned(|typed| {
+            (typed.output, typed.output_option) = (Some("a.png".into()), Some("b.png".into()))
+        });
+        assert_eq!(
+            message.unwrap_err(),
+            "the picture is given twice: `a.png` in its place and `--output b.png`"
+        );
+        let message =
+            planned(|typed| (typed.cutoff_value, typed.cutoff) = (Some(0.5), Some(0.5))).unwrap_err();
+        assert!(message.contains("`0.5` in its place and `--cutoff 0.5`"), "{message}");
+        let message = size_of(|typed| (typed.size, typed.height) = (Some(Size(7, 5)), Some(5))).unwrap_err();
+        assert_eq!(message, "the height is given twice: 5 and `--size 7x5`");
+    }
+
+    #[test]
+    fn formats_follow_the_name_and_the_depth() {
+        let format = |name: &str, typed: Option<FormatName>, depth| {
+            planned(|args| (args.output, args.format, args.depth) = (Some(name.into()), typed, depth))
+                .map(|plan| plan.format)
+        };
+        assert_eq!(format("a.BMP", None, None), Ok(Format::Bmp));
+        assert_eq!(format("a.png", None, Some(Depth::Sixteen)), Ok(Format::Png16));
+        assert_eq!(format("a", Some(FormatName::Exr), None), Ok(Format::Exr));
+        assert_eq!(format("-", Some(FormatName::Png16), None), Ok(Format::Png16));
+        assert!(format("a.bmp", None, Some(Depth::Sixteen)).is_err());
+        assert!(format("a.png", Some(FormatName::Png16), Some(Depth::Eight)).is_err());
+        assert!(format("a", None, None).unwrap_err().contains("--format"));
+    }
+
+    #[test]
+    fn idle_and_impossible_options_are_refused() {
+        assert!(planned(|typed| typed.aa_depth = Some(2)).unwrap_err().contains("--aa adaptive"));
+        assert!(planned(|typed| typed.jpeg_quality = Some(50)).unwrap_err().contains("JPEG only"));
+        assert!(planned(|typed| typed.max_pixels = Some(1000)).unwrap_err().contains("the limit is 1000"));
+        assert!(planned(|typed| typed.aa = Aa::Grid(65)).unwrap_err().contains("grid is 65"));
+        assert!(planned(|typed| typed.cutoff = Some(f64::NAN)).unwrap_err().contains("cutoff"));
+        let wide =
+            planned(|typed| (typed.size, typed.format) = (Some(Size(70_000, 10)), Some(FormatName::Jpeg)));
+        assert!(wide.unwrap_err().contains("65535"));
     }
 }

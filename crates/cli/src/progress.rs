@@ -18,7 +18,7 @@ pub struct Watcher {
 }
 
 /// The eye follows no faster, and each drawing costs a system call.
-const DRAWINGS_A_SECOND: u8 = 10;
+const DRAWINGS_A_SECOND: u8 = 5;
 
 impl Watcher {
     /// A bar over `pixels` on standard error if that is a terminal and `quiet` is not asked for.
@@ -43,11 +43,13 @@ fn bar(pixels: u64) -> ProgressBar {
         // Nothing can be done about a terminal that takes no text.
         let _ = out.write_str(&rate_text(state.per_sec()));
     };
-    let template = "{wide_bar} {percent:>3}%  {rate}  {eta} left";
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style.with_key("rate", rate));
+    let left = |state: &ProgressState, out: &mut dyn fmt::Write| {
+        let _ = out.write_str(&left_text(state.pos(), state.eta()));
+    };
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3}%  {rate}  {left}") {
+        bar.set_style(style.with_key("rate", rate).with_key("left", left));
     }
-    bar.enable_steady_tick(Duration::from_millis(500));
+    bar.enable_steady_tick(Duration::from_millis(1000 / u64::from(DRAWINGS_A_SECOND)));
     bar
 }
 
@@ -59,6 +61,21 @@ fn rate_text(per_second: f64) -> String {
         format!("{:.1} kpixel/s", per_second / 1e3)
     } else {
         format!("{per_second:.0} pixel/s")
+    }
+}
+
+/// Time left for people; nobody knows it before the first tile.
+fn left_text(position: u64, left: Duration) -> String {
+    let seconds = left.as_secs();
+    let (hours, minutes) = (seconds / 3600, seconds / 60);
+    if position == 0 {
+        "started".to_owned()
+    } else if hours > 0 {
+        format!("{hours}h {}m left", minutes % 60)
+    } else if minutes > 0 {
+        format!("{minutes}m {}s left", seconds % 60)
+    } else {
+        format!("{seconds}s left")
     }
 }
 
@@ -86,5 +103,9 @@ mod tests {
         assert_eq!(rate_text(12.4), "12 pixel/s");
         assert_eq!(rate_text(12_345.0), "12.3 kpixel/s");
         assert_eq!(rate_text(12_345_678.0), "12.35 Mpixel/s");
+        assert_eq!(left_text(0, Duration::ZERO), "started");
+        assert_eq!(left_text(1, Duration::from_secs(9)), "9s left");
+        assert_eq!(left_text(1, Duration::from_secs(90)), "1m 30s left");
+        assert_eq!(left_text(1, Duration::from_secs(2 * 3600 + 60)), "2h 1m left");
     }
 }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{affine, aim, point, ray_near, solid, triangle};
-use dotray_geometry::{Aabb, Affine, Ray, Shape, Vec2, Vec3};
+use dotray_geometry::{Aabb, Affine, Cylinder, Ray, Shape, Vec2, Vec3};
 use proptest::prelude::*;
 
 /// A point of the surface for two numbers in 0..=1, by the shape's own parametrisation; `part` picks a face.
@@ -67,6 +67,23 @@ proptest! {
         prop_assert!((surface.shading_normal - Vec3::new(1.0 - beta - gamma, beta, gamma)).length() < 1e-9);
         prop_assert!(surface.geometric_normal.dot((b - a).cross(c - a)) > 0.0);
     }
+}
+
+#[test]
+fn surfaces_stay_within_the_shape_however_far_the_origin() {
+    // Rays at the rim, from so far that rounding moves the point by much more than the padding.
+    let shape = Shape::Cylinder(Cylinder::new(Vec3::ZERO, 1.0, 2.0).unwrap());
+    let mut outside = 0;
+    for i in 0..1000 {
+        let target = Vec3::new(1.0, 1.0 - 1e-9 * f64::from(i), 0.0);
+        let direction = Vec3::new(-0.5, -0.3, 0.1 + 1e-4 * f64::from(i));
+        let ray = Ray::new(target - direction * 1e8, direction);
+        for &hit in shape.crossings(&ray).as_slice() {
+            outside += usize::from(!shape.bounds().contains(ray.at(hit.t)));
+            assert!(shape.bounds().contains(shape.surface(&ray, hit).point));
+        }
+    }
+    assert!(outside > 0, "the rays are not far enough to show anything");
 }
 
 proptest! {

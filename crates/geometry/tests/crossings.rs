@@ -57,7 +57,9 @@ proptest! {
             let surface = shape.surface(&ray, hit);
             let own_size = shape.bounds().max.abs().max(shape.bounds().min.abs()).max_element();
             prop_assert!(depth(&shape, surface.point).abs() <= 1e-15 * 8.0 * own_size);
-            prop_assert!(surface.point.distance(raw) <= 1e-12 * scale);
+            // At the rim of a flat cone, rounding along the axis is a longer way along the side.
+            let flatness = shape.bounds().size().max_element() / shape.bounds().size().min_element();
+            prop_assert!(surface.point.distance(raw) <= 1e-12 * scale * flatness);
             prop_assert!(shape.bounds().contains(surface.point));
             prop_assert!((surface.geometric_normal.length() - 1.0).abs() < 1e-15 * 4.0);
             prop_assert_eq!(surface.shading_normal, surface.geometric_normal);

@@ -87,7 +87,7 @@ proptest! {
         let across = oriented.axis().any_orthonormal_vector();
         let across = Quat::from_axis_angle(oriented.axis(), x * 5.0) * across * map.1;
         for (offset, count) in [(0.9999, 2), (1.0001, 0)] {
-            let along = Ray::new(oriented.base() + across * offset, oriented.axis());
+            let along = Ray::new(oriented.base() + across * offset, oriented.axis() * miss);
             prop_assert_eq!(oriented.crossings(&along).as_slice().len(), count);
         }
     }

@@ -47,10 +47,12 @@ fn rgbe_of(pixel: &[f32]) -> [u8; 4] {
     let binary_exponent = ((greatest.to_bits() >> 52) & 0x7ff) as i32 - 1023;
     let mut exponent = binary_exponent + 129;
     // Rounding up to 256 needs the next exponent.
-    if (greatest / power_of_two(exponent - 136)).round() > 255.0 {
+    if greatest * power_of_two(136 - exponent) >= 255.5 {
         exponent += 1;
     }
-    let [red, green, blue] = rgb.map(|value| (value / power_of_two(exponent - 136)).round() as u8);
+    // The conversion cuts off: adding a half makes it round.
+    let unit = power_of_two(136 - exponent);
+    let [red, green, blue] = rgb.map(|value| (value * unit + 0.5) as u8);
     [red, green, blue, exponent as u8]
 }
 

@@ -11,11 +11,13 @@ use crate::limits::Limits;
 pub(crate) fn encode(image: &Image) -> Vec<u8> {
     let mut file = format!("PF\n{} {}\n-1.0\n", image.width(), image.height()).into_bytes();
     let count = image.channels().count();
-    file.reserve(image.width() * image.height() * 12);
-    for row in image.samples().chunks_exact(image.width() * count).rev() {
-        file.extend(
-            row.chunks_exact(count).flat_map(|pixel| pixel.iter().take(3)).flat_map(|c| c.to_le_bytes()),
-        );
+    let header = file.len();
+    file.resize(header + image.width() * image.height() * 12, 0);
+    let stored = file.get_mut(header..).unwrap_or_default().as_chunks_mut::<12>().0;
+    let rows = image.samples().chunks_exact(image.width() * count).rev();
+    for (stored, pixel) in stored.iter_mut().zip(rows.flat_map(|row| row.chunks_exact(count))) {
+        let stored = stored.as_chunks_mut::<4>().0.iter_mut();
+        stored.zip(pixel).for_each(|(stored, sample)| *stored = sample.to_le_bytes());
     }
     file
 }

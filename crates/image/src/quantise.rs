@@ -4,13 +4,25 @@ use std::sync::LazyLock;
 
 /// round(255·clamp(c, 0, 1)); NaN becomes 0.
 pub(crate) fn to_u8(sample: f32) -> u8 {
-    // 255·c is exact in double precision, and the conversion cuts off: adding a half makes it round.
-    (f64::from(sample).clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+    rounded(sample, 255.0) as u8
 }
 
 /// round(65535·clamp(c, 0, 1)); NaN becomes 0.
+#[cfg(any(test, feature = "formats"))]
 pub(crate) fn to_u16(sample: f32) -> u16 {
-    (f64::from(sample).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+    rounded(sample, 65535.0) as u16
+}
+
+/// round(max·clamp(c, 0, 1)) in the low bits.
+fn rounded(sample: f32, max: f64) -> u64 {
+    // Comparisons that NaN fails take it to 0.
+    let above = if sample > 0.0 { sample } else { 0.0 };
+    let clamped = if above < 1.0 { above } else { 1.0 };
+    // The product is exact in double precision. Doubles of this size are whole numbers, so the sum is rounded to the
+    // nearest one, which then stands in the low bits: unlike a conversion, this is vectorised. The only tie is 0.5,
+    // where the even neighbour, 128 or 32768, is the upper one.
+    const TWO_TO_52: f64 = 4_503_599_627_370_496.0;
+    (f64::from(clamped) * max + TWO_TO_52).to_bits()
 }
 
 /// The sRGB curve of IEC 61966-2-1 from linear light to display values, clamped to 0…1; NaN becomes 0.
@@ -31,20 +43,14 @@ pub(crate) fn srgb_encoded(linear: f32) -> f64 {
 pub(crate) fn to_srgb_u8(linear: f32) -> u8 {
     // The conversion cuts off, and takes NaN and what lies below 0 to 0; the product is exact.
     let part = ((linear * SRGB_PARTS as f32) as usize).min(SRGB_PARTS);
-    let (mut code, steps) = match SRGB_TABLES.codes.get(part) {
-        Some(&code) => (code, SRGB_TABLES.steps.get(usize::from(code)..).unwrap_or_default()),
-        None => (0, [].as_slice()),
-    };
-    for step in steps {
-        if !(linear >= *step) {
-            break;
-        }
-        code += 1;
-    }
-    code
+    let begin = SRGB_TABLES.codes.get(part).copied().unwrap_or_default();
+    let steps = SRGB_TABLES.steps.get(usize::from(begin)..).unwrap_or_default();
+    // At most 255 in all, because there are no more steps.
+    begin + steps.iter().take_while(|&&step| linear >= step).count() as u8
 }
 
 /// `to_u16` of the sRGB-encoded sample.
+#[cfg(any(test, feature = "formats"))]
 pub(crate) fn to_srgb_u16(linear: f32) -> u16 {
     (srgb_encoded(linear) * 65535.0 + 0.5) as u16
 }
@@ -101,6 +107,18 @@ mod tests {
         }
         for code in 0..=65535 {
             assert_eq!(to_u16(f32::from(code) / 65535.0), code);
+        }
+    }
+
+    #[test]
+    fn rounding_equals_the_formula() {
+        let by_formula = |sample: f32, max: f64| (f64::from(sample) * max).round() as u64;
+        for step in 0..=1_000_000_u32 {
+            let near_half = (step % 256) as f32 / 255.0 + 0.5 / 255.0;
+            for sample in [step as f32 / 1e6, f32::from_bits(near_half.min(0.99).to_bits() - 4 + step % 8)] {
+                assert_eq!(u64::from(to_u8(sample)), by_formula(sample, 255.0), "{sample}");
+                assert_eq!(u64::from(to_u16(sample)), by_formula(sample, 65535.0), "{sample}");
+            }
         }
     }
 

@@ -269,7 +269,7 @@ fn files_cut_anywhere_are_refused() {
         for length in 0..bytes.len() {
             let result = decode(&bytes[..length]);
             // The two run-length files are complete without the marks at their end.
-            let complete = matches!(number, 3 | 4) && length + 4 >= bytes.len() && result.is_ok();
+            let complete = matches!(number, 3 | 4) && length + 5 >= bytes.len() && result.is_ok();
             assert!(complete || result.is_err(), "kind {number} cut to {length} of {} bytes", bytes.len());
         }
     }

@@ -12,7 +12,7 @@ fn main() {
         None => spheres(1_000_000).into_bytes(),
     };
     let mut best = f64::INFINITY;
-    for _ in 0..5 {
+    for _ in 0..15 {
         let copy = text.clone();
         let begin = Instant::now();
         let loaded = load_text("spheres.ray", copy, &Disk, &LoadOptions::default());

@@ -51,6 +51,8 @@ pub enum Directive {
     VertexNum,
     /// `#vertex`
     Vertex,
+    /// `#ray_file_num`
+    RayFileNum,
     /// `#ray_file`
     RayFile,
     /// `#ray_file_instance`
@@ -210,12 +212,17 @@ pub fn suggest(word: &[u8]) -> Option<&'static Spec> {
         return None;
     }
     let lower = word.to_ascii_lowercase();
-    let near = (lower.len() / 4).clamp(1, 4);
+    let near = (lower.len() / 3).clamp(1, 4);
     let distances = DIRECTIVES.iter().map(|spec| (edit_distance(&lower, spec.word.as_bytes()), spec));
-    distances
-        .min_by_key(|(distance, _)| *distance)
-        .filter(|(distance, _)| *distance <= near)
-        .map(|(_, spec)| spec)
+    let nearest = distances.min_by_key(|(distance, _)| *distance);
+    // `#sphere` is far from `#shape_sphere` in letters, but not to a person.
+    let stem = lower.strip_prefix(b"#").filter(|stem| stem.len() > 2);
+    let whole =
+        |spec: &&Spec| stem.is_some_and(|stem| spec.word.as_bytes().ends_with(&[b"_", stem].concat()));
+    match nearest {
+        Some((distance, spec)) if distance <= near => Some(spec),
+        Some(_) | None => DIRECTIVES.iter().find(whole),
+    }
 }
 
 /// How many letters must be put in, left out, changed or swapped with their neighbour to get from one to the other.
@@ -285,6 +292,10 @@ mod tests {
             ("#x", None),
             ("#group_start", None),
             ("#groupbegin", Some("#group_begin")),
+            ("#Sphere", Some("#shape_sphere")),
+            ("#box", Some("#shape_box")),
+            ("#end", Some("#group_end")),
+            ("#include", None),
         ];
         for (word, nearest) in cases {
             assert_eq!(suggest(word.as_bytes()).map(|spec| spec.word), nearest, "{word}");

@@ -77,6 +77,7 @@ const BLANK: u8 = 1;
 /// What a number may begin with.
 const NUMBER_START: u8 = 2;
 
+#[allow(clippy::indexing_slicing, reason = "computed by the compiler")]
 static CLASS: [u8; 256] = {
     let mut class = [0; 256];
     let mut byte = 0;
@@ -309,6 +310,7 @@ pub fn number(word: &[u8]) -> Result<f64, NumberFault> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::indexing_slicing)]
 mod tests {
     use super::*;
 

@@ -146,21 +146,21 @@ impl<'a> Loader<'a> {
     fn find_include(&mut self, name: &str, span: Span) -> Option<FileId> {
         let candidates =
             candidates(self.sources.path(span.file), name, self.options.working_directory.as_deref());
-        if let Some(known) = candidates.iter().find_map(|path| self.known.get(&self.files.identity(path))) {
-            return Some(*known);
-        }
         let depth = self.reached.get(span.file.0 as usize).map_or(0, |reached| reached.depth) + 1;
         let Limits { max_file_bytes, max_include_depth, max_includes, .. } = self.options.limits;
-        if depth > max_include_depth || self.reached.len() >= max_includes {
-            let message = match depth > max_include_depth {
-                true => format!("files include each other more than {max_include_depth} deep"),
-                false => format!("the scene has more than {max_includes} files"),
-            };
-            self.sink.error(Diagnostic::error("include-limit", message).at(span).label("is not read"));
-            return None;
-        }
         let mut tried = Vec::new();
         for path in candidates {
+            if let Some(known) = self.known.get(&self.files.identity(&path)) {
+                return Some(*known);
+            }
+            if depth > max_include_depth || self.reached.len() >= max_includes {
+                let message = match depth > max_include_depth {
+                    true => format!("files include each other more than {max_include_depth} deep"),
+                    false => format!("the scene has more than {max_includes} files"),
+                };
+                self.sink.error(Diagnostic::error("include-limit", message).at(span).label("is not read"));
+                return None;
+            }
             match self.files.read_at_most(&path, max_file_bytes) {
                 Ok(bytes) => return Some(self.take(path, bytes, Reached { by: Some(span), depth })),
                 Err(fault) => tried.push((path, fault)),
@@ -320,7 +320,9 @@ fn too_large_error(path: &Path, limits: &Limits) -> Diagnostic {
 
 /// Where an included file may be: beside the file that names it, else in the working directory.
 fn candidates(from: &Path, name: &str, working_directory: Option<&Path>) -> Vec<PathBuf> {
-    let beside = from.parent().unwrap_or(Path::new("")).join(name);
-    let working = working_directory.unwrap_or(Path::new("")).join(name);
+    // Through its components a path loses `./`.
+    let within = |folder: &Path| folder.join(name).components().collect::<PathBuf>();
+    let beside = within(from.parent().unwrap_or(Path::new("")));
+    let working = within(working_directory.unwrap_or(Path::new("")));
     if beside == working { vec![beside] } else { vec![beside, working] }
 }

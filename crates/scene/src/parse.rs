@@ -250,9 +250,11 @@ impl<'a> Parser<'a> {
             Directive::Material => self.material(),
             Directive::RayFile => self.ray_file(),
             Directive::RayFileInstance => self.instance(),
-            Directive::LightNum | Directive::TextureNum | Directive::MaterialNum | Directive::VertexNum => {
-                self.hint();
-            }
+            Directive::LightNum
+            | Directive::TextureNum
+            | Directive::MaterialNum
+            | Directive::VertexNum
+            | Directive::RayFileNum => self.hint(),
         }
     }
 
@@ -284,6 +286,7 @@ impl<'a> Parser<'a> {
             | Directive::ShapeCone
             | Directive::ShapeTriangle
             | Directive::VertexNum
+            | Directive::RayFileNum
             | Directive::RayFileInstance => {}
         }
     }
@@ -308,13 +311,12 @@ impl<'a> Parser<'a> {
         let error =
             Diagnostic::error("unknown-directive", format!("unknown directive {}", arguments::shown(word)));
         let error = error.at(span).label("no directive has this name");
-        self.sink.error(match (dialect, suggestion) {
-            (Some(dialect), _) => error
-                .help(format!("it belongs to the dialect `{dialect}`; only the dialect `slides` is read")),
-            (None, Some(spec)) => error.help(format!("did you mean `{}`?", spec.word)),
-            (None, None) if word == b"#" => error.help("a comment begins with `//`"),
-            (None, None) => error,
-        });
+        let foreign = dialect
+            .map(|dialect| format!("it belongs to the dialect `{dialect}`, and only `slides` is read"));
+        let meant = suggestion.map(|spec| format!("did you mean `{}`?", spec.word));
+        let comment = (word == b"#").then(|| "a comment begins with `//`".to_owned());
+        let help: Vec<String> = [foreign, meant, comment].into_iter().flatten().collect();
+        self.sink.error(Diagnostic { help: (!help.is_empty()).then(|| help.join("; ")), ..error });
         self.skip_arguments();
     }
 

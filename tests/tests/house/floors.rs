@@ -63,7 +63,9 @@ fn file_faults(source: &Source, path: &[&str], modules: &[String], floor: usize,
         let Some(named) = after.strip_prefix("::") else { continue };
         let used = words(named).first().map_or("", |first| first.1);
         match word {
-            "crate" if named.starts_with('{') => fault(at, "a grouped `use crate::{…}` hides floors".to_owned()),
+            "crate" if named.starts_with('{') => {
+                fault(at, "a grouped `use crate::{…}` hides floors".to_owned())
+            }
             "crate" => match modules.iter().position(|module| module == used) {
                 Some(other) if other <= floor => {}
                 Some(_) => fault(at, format!("`{}` uses `{used}`, which stands above it", path[0])),
@@ -122,7 +124,10 @@ fn planted_faults_are_found() {
         files.push((path, text));
         faults(&tree(&files))
     };
-    assert_eq!(of("high.rs", "use crate::low::A; use crate::high::B;\n/// [`crate::Name`]\nfn f() {}"), [""; 0]);
+    assert_eq!(
+        of("high.rs", "use crate::low::A; use crate::high::B;\n/// [`crate::Name`]\nfn f() {}"),
+        [""; 0]
+    );
     assert_eq!(of("low/part.rs", "use crate::low::A; use super::B;"), [""; 0]);
     assert_eq!(of("low.rs", "#[cfg(test)]\nmod tests { use crate::high::A; use super::*; }"), [""; 0]);
     for (path, text, expected) in [

@@ -94,8 +94,7 @@ fn members_use_only_floors_below_them_and_inherit_from_the_workspace() {
     }
     manifests.push(root().join("tests/Cargo.toml"));
     manifests.push(root().join("xtask/Cargo.toml"));
-    let texts: Vec<String> =
-        manifests.iter().filter_map(|path| std::fs::read_to_string(path).ok()).collect();
+    let texts: Vec<String> = manifests.iter().filter_map(|path| std::fs::read_to_string(path).ok()).collect();
     assert!(texts.len() >= 7, "the manifests were not found");
     let faults: Vec<String> = texts.iter().flat_map(|text| faults(text)).collect();
     super::expect_none("floors between crates", &faults);
@@ -104,7 +103,8 @@ fn members_use_only_floors_below_them_and_inherit_from_the_workspace() {
 #[test]
 fn planted_faults_are_found() {
     let head = |name: &str| {
-        let inherited = ["version", "edition", "rust-version", "license"].map(|key| format!("{key}.workspace = true"));
+        let inherited =
+            ["version", "edition", "rust-version", "license"].map(|key| format!("{key}.workspace = true"));
         format!("[package]\nname = \"{name}\"\n{}\n[lints]\nworkspace = true\n", inherited.join("\n"))
     };
     let of = |name: &str, rest: &str| faults(&(head(name) + rest));
@@ -117,13 +117,20 @@ fn planted_faults_are_found() {
         "[dependencies.dotray-image]\nworkspace = true",
         "[dependencies]\npictures = { package = \"dotray-image\", version = \"1\" }",
     ] {
-        assert_eq!(of("dotray-scene", rest), ["dotray-scene uses dotray-image, which is on no floor below it"]);
+        assert_eq!(
+            of("dotray-scene", rest),
+            ["dotray-scene uses dotray-image, which is on no floor below it"]
+        );
     }
     assert_eq!(of("dotray-viewer", "[dependencies]\ndotray = \"1\"").len(), 1);
     assert_eq!(of("dotray-tests", "[dependencies]\ndotray-viewer = \"1\"").len(), 1);
     assert_eq!(of("dotray-new", "").len(), 1);
     for line in ["version.workspace = true", "workspace = true\n[", "license.workspace = true"] {
-        let text = (head("dotray-image") + "[dependencies]").replacen(line, if line.ends_with('[') { "[" } else { "" }, 1);
+        let text = (head("dotray-image") + "[dependencies]").replacen(
+            line,
+            if line.ends_with('[') { "[" } else { "" },
+            1,
+        );
         assert_eq!(faults(&text).len(), 1, "{text}");
     }
 }

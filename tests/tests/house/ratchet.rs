@@ -60,7 +60,10 @@ fn compare(over: &[(String, String, usize)], list: &[(&str, &str, usize)]) -> Ve
                 faults.push(format!("{path}: `{name}` has grown from {} to {lines} lines", entry.2));
             }
             Some(entry) if *lines < entry.2 => {
-                faults.push(format!("{path}: `{name}` has shrunk to {lines} lines: lower its {} here", entry.2));
+                faults.push(format!(
+                    "{path}: `{name}` has shrunk to {lines} lines: lower its {} here",
+                    entry.2
+                ));
             }
             Some(_) => {}
         }

@@ -207,7 +207,8 @@ fn comments_and_literals_are_blanked() {
 
 #[test]
 fn unit_tests_are_blanked() {
-    let text = "fn a() {}\n#[cfg(test)]\nmod tests {\n fn b() { \"}\" }\n}\n#[cfg(test)]\nmod x;\nfn c() {}\n";
+    let text =
+        "fn a() {}\n#[cfg(test)]\nmod tests {\n fn b() { \"}\" }\n}\n#[cfg(test)]\nmod x;\nfn c() {}\n";
     let blanked = code_without_tests(text);
     assert_eq!(blanked.lines().count(), text.lines().count());
     assert_eq!(words(&blanked).iter().map(|w| w.1).collect::<Vec<_>>(), ["fn", "a", "fn", "c"]);

@@ -15,19 +15,51 @@ const UNSAFE_FILES: &[&str] = &[];
 const LOWERED_LINTS: &[(&str, &str)] = &[];
 
 /// The crates whose bytes must be the same on every system.
-const EXACT: [&str; 4] = ["crates/geometry/src/", "crates/accel/src/", "crates/scene/src/", "crates/render/src/"];
+const EXACT: [&str; 4] =
+    ["crates/geometry/src/", "crates/accel/src/", "crates/scene/src/", "crates/render/src/"];
 
 /// Methods of floats whose last bits depend on the platform; `libm` has them all.
 const PLATFORM_METHODS: [&str; 28] = [
-    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sin_cos", "sinh", "cosh", "tanh", "asinh", "acosh",
-    "atanh", "exp", "exp2", "exp_m1", "ln", "ln_1p", "log", "log2", "log10", "powf", "powi", "cbrt", "hypot",
-    "angle_between", "slerp",
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "sin_cos",
+    "sinh",
+    "cosh",
+    "tanh",
+    "asinh",
+    "acosh",
+    "atanh",
+    "exp",
+    "exp2",
+    "exp_m1",
+    "ln",
+    "ln_1p",
+    "log",
+    "log2",
+    "log10",
+    "powf",
+    "powi",
+    "cbrt",
+    "hypot",
+    "angle_between",
+    "slerp",
 ];
 
 /// Functions that call them.
 const PLATFORM_FUNCTIONS: [&str; 8] = [
-    "from_rotation_x", "from_rotation_y", "from_rotation_z", "from_axis_angle", "from_scaled_axis", "from_euler",
-    "from_angle", "to_axis_angle",
+    "from_rotation_x",
+    "from_rotation_y",
+    "from_rotation_z",
+    "from_axis_angle",
+    "from_scaled_axis",
+    "from_euler",
+    "from_angle",
+    "to_axis_angle",
 ];
 
 /// Fused and estimated operations, which round differently from machine to machine.
@@ -74,7 +106,9 @@ fn lowered_lints(text: &str) -> Vec<String> {
         for keyword in ["allow(", "expect("] {
             for (_, rest) in attribute.match_indices(keyword).map(|(i, k)| attribute.split_at(i + k.len())) {
                 let list = rest.split(')').next().unwrap_or("");
-                lints.extend(list.split(',').map(|lint| lint.trim().to_owned()).filter(|lint| !lint.is_empty()));
+                lints.extend(
+                    list.split(',').map(|lint| lint.trim().to_owned()).filter(|lint| !lint.is_empty()),
+                );
             }
         }
     }
@@ -173,7 +207,10 @@ fn tasks_have_names_and_paths_are_relative() {
 fn lines_fit_the_page() {
     let long = |text: &str| -> Vec<String> {
         let lines = text.lines().enumerate();
-        lines.filter(|(_, l)| l.chars().count() > 120).map(|(i, _)| format!("{}: over 120 columns", i + 1)).collect()
+        lines
+            .filter(|(_, l)| l.chars().count() > 120)
+            .map(|(i, _)| format!("{}: over 120 columns", i + 1))
+            .collect()
     };
     assert_eq!(long(&format!("{}\n{}", "ö".repeat(120), "x".repeat(121))), ["2: over 120 columns"]);
     super::expect_none("long lines", &faults_of(|_| true, long));
@@ -181,7 +218,9 @@ fn lines_fit_the_page() {
 
 #[test]
 fn planted_faults_are_found() {
-    for text in ["x.sin()", "x\n    .powi(2)", "f64::exp(x)", "Mat3::from_rotation_y(1.0)", "a.map(f64::atan2)"] {
+    for text in
+        ["x.sin()", "x\n    .powi(2)", "f64::exp(x)", "Mat3::from_rotation_y(1.0)", "a.map(f64::atan2)"]
+    {
         assert_eq!(platform_faults(text).len(), 1, "{text}");
     }
     for text in ["libm::sin(x)", "// x.sin()", "\"x.cos()\"", "self.log", "#[cfg(test)]\nfn f() { x.ln() }"] {
@@ -191,7 +230,10 @@ fn planted_faults_are_found() {
     assert_eq!(fused_faults(&fused).len(), 1);
     assert_eq!(fused_faults(&format!("// no {}", fused)).len(), 0);
     assert_eq!(unsafe_faults("unsafe { x }\n// unsafe\n#![forbid(unsafe_code)]").len(), 1);
-    assert_eq!(lowered_lints("#![allow(dead_code, clippy::x)]\n#![cfg_attr(test, allow(a))]"), ["dead_code", "clippy::x"]);
+    assert_eq!(
+        lowered_lints("#![allow(dead_code, clippy::x)]\n#![cfg_attr(test, allow(a))]"),
+        ["dead_code", "clippy::x"]
+    );
     assert_eq!(lowered_lints("#![cfg_attr(feature, expect(a))]\n#![warn(b)]"), ["a"]);
     let task = format!("{}{}", "TO", "DO");
     assert_eq!(nameless_tasks(&format!("// {task}: this")).len(), 1);

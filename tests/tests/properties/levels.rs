@@ -28,8 +28,10 @@ fn fingerprints() -> Vec<String> {
     let mut lines = Vec::new();
     for (name, scene, options) in scenes {
         for kind in Kind::ALL {
-            let world = pictures::world(scene.clone(), kind).unwrap_or_else(|error| panic!("{name}: {error}"));
-            let picture = pictures::picture(&world, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let world =
+                pictures::world(scene.clone(), kind).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let picture =
+                pictures::picture(&world, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
             lines.push(format!("{MARK}{name} {} {:016x}", kind.name(), pictures::fingerprint(&picture)));
         }
     }
@@ -68,6 +70,9 @@ fn every_simd_level_gives_the_same_bytes() {
     for level in levels.into_iter().filter(|&level| level != "scalar") {
         let actual = fingerprints_at(level);
         let other: Vec<&String> = actual.iter().filter(|line| !expected.contains(line)).collect();
-        assert!(other.is_empty() && actual.len() == expected.len(), "{level} differs from scalar: {other:#?}");
+        assert!(
+            other.is_empty() && actual.len() == expected.len(),
+            "{level} differs from scalar: {other:#?}"
+        );
     }
 }

@@ -55,10 +55,12 @@ fn material() -> std::ops::Range<usize> {
 /// Any shape.
 pub fn shape() -> impl Strategy<Value = AnyShape> {
     let of = |kind: &'static str, lengths: usize| {
-        (vec(coordinate(), 3), vec(length(), lengths), material()).prop_map(move |(mut numbers, lengths, material)| {
-            numbers.extend(lengths);
-            AnyShape { kind, numbers, material }
-        })
+        (vec(coordinate(), 3), vec(length(), lengths), material()).prop_map(
+            move |(mut numbers, lengths, material)| {
+                numbers.extend(lengths);
+                AnyShape { kind, numbers, material }
+            },
+        )
     };
     let triangle = (vec(coordinate(), 9), prop_oneof![Just(vec![0.0; 9]), vec(-1.0..1.0_f64, 9)], material());
     let triangle = triangle.prop_map(|(mut numbers, normals, material)| {
@@ -92,8 +94,11 @@ pub fn matrix() -> impl Strategy<Value = Rows> {
         shift().prop_map(|s| [[0.0, -1.0, 0.0, s[0]], [1.0, 0.0, 0.0, s[1]], [0.0, 0.0, 1.0, s[2]]]),
         shift().prop_map(move |s| diagonal(-1.0, 1.0, 1.0, &s)),
         (vec(0.3..2.0_f64, 3), shift()).prop_map(move |(d, s)| diagonal(d[0], d[1], d[2], &s)),
-        (-1.0..1.0_f64, -1.0..1.0_f64, shift())
-            .prop_map(|(a, b, s)| [[1.0, a, 0.0, s[0]], [0.0, 1.0, b, s[1]], [0.0, 0.0, 1.0, s[2]]]),
+        (-1.0..1.0_f64, -1.0..1.0_f64, shift()).prop_map(|(a, b, s)| [
+            [1.0, a, 0.0, s[0]],
+            [0.0, 1.0, b, s[1]],
+            [0.0, 0.0, 1.0, s[2]]
+        ]),
         (vec(-1.5..1.5_f64, 9), shift())
             .prop_map(|(m, s)| [[m[0], m[1], m[2], s[0]], [m[3], m[4], m[5], s[1]], [m[6], m[7], m[8], s[2]]])
             .prop_filter("too flat", |m| determinant(m).abs() > 0.1),
@@ -110,8 +115,13 @@ pub fn group() -> impl Strategy<Value = AnyGroup> {
             shapes
         })
     };
-    let leaf = (matrix(), shapes()).prop_map(|(matrix, shapes)| AnyGroup { matrix, shapes, inner: Vec::new() });
-    (matrix(), shapes(), vec(leaf, 0..3)).prop_map(|(matrix, shapes, inner)| AnyGroup { matrix, shapes, inner })
+    let leaf =
+        (matrix(), shapes()).prop_map(|(matrix, shapes)| AnyGroup { matrix, shapes, inner: Vec::new() });
+    (matrix(), shapes(), vec(leaf, 0..3)).prop_map(|(matrix, shapes, inner)| AnyGroup {
+        matrix,
+        shapes,
+        inner,
+    })
 }
 
 fn write_group(group: &AnyGroup, text: &mut String) {

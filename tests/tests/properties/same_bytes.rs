@@ -18,7 +18,8 @@ pub fn small_corpus() -> Vec<(String, Scene, Options)> {
     let cases = corpus::conformance().into_iter();
     cases
         .map(|case| {
-            let scene = pictures::scene_of_file(&case.scene, &Disk).unwrap_or_else(|e| panic!("{}: {e}", case.name));
+            let scene =
+                pictures::scene_of_file(&case.scene, &Disk).unwrap_or_else(|e| panic!("{}: {e}", case.name));
             let options = Options {
                 width: case.options.width.div_ceil(4),
                 height: case.options.height.div_ceil(4),
@@ -46,7 +47,8 @@ fn other_bytes(scene: &Scene, options: &Options, kind: Kind, expected: &Image) -
             let options = Options { threads: Some(threads), tile_size, ..options.clone() };
             let actual = pictures::picture(&world, &options).unwrap_or_else(|error| panic!("{error}"));
             if let Some(difference) = pictures::difference(expected, &actual) {
-                faults.push(format!("{}, {threads} threads, tiles of {tile_size}: {difference}", kind.name()));
+                faults
+                    .push(format!("{}, {threads} threads, tiles of {tile_size}: {difference}", kind.name()));
             }
         }
     }

@@ -69,10 +69,12 @@ fn written_at_scale(scene: &Scene, s: f64) -> Scene {
             *cuboid = Cuboid::new(cuboid.center() * s, cuboid.size() * s).expect("still a box");
         }
         for shape in &mut file.cylinders.shapes {
-            *shape = Cylinder::new(shape.center() * s, shape.radius() * s, shape.height() * s).expect("a cylinder");
+            *shape = Cylinder::new(shape.center() * s, shape.radius() * s, shape.height() * s)
+                .expect("a cylinder");
         }
         for shape in &mut file.cones.shapes {
-            *shape = Cone::new(shape.center() * s, shape.radius() * s, shape.height() * s).expect("still a cone");
+            *shape =
+                Cone::new(shape.center() * s, shape.radius() * s, shape.height() * s).expect("still a cone");
         }
         for triangle in &mut file.triangles.shapes {
             *triangle = scale_triangle(triangle, s);
@@ -109,14 +111,16 @@ fn unlike(expected: &Image, actual: &Image) -> Option<String> {
             continue;
         }
         off.push((x, y));
-        let around = (y.max(1) - 1..(y + 2).min(height)).flat_map(|j| (x.max(1) - 1..(x + 2).min(width)).map(move |i| (i, j)));
+        let around = (y.max(1) - 1..(y + 2).min(height))
+            .flat_map(|j| (x.max(1) - 1..(x + 2).min(width)).map(move |i| (i, j)));
         let relief = around.map(|(i, j)| distance(here, at(expected, i, j))).fold(0.0, f32::max);
         if relief < 0.05 && difference > 0.1 {
             return Some(format!("pixel {x},{y} is off by {difference} where the picture is flat"));
         }
     }
     let allowed = (width * height).div_ceil(1000);
-    (off.len() > allowed).then(|| format!("{} of {} pixels differ, first {:?}", off.len(), width * height, off[0]))
+    (off.len() > allowed)
+        .then(|| format!("{} of {} pixels differ, first {:?}", off.len(), width * height, off[0]))
 }
 
 /// Renders the corpus at every scale; `change` makes the scaled scene.
@@ -168,7 +172,9 @@ fn scenes_in_a_group_of_any_scale_look_alike() {
 
 #[test]
 fn unlike_pictures_are_told_apart() {
-    let grey = |value: f32| Image::from_samples(40, 40, dotray_image::Channels::Rgb, vec![value; 4800]).expect("fits");
+    let grey = |value: f32| {
+        Image::from_samples(40, 40, dotray_image::Channels::Rgb, vec![value; 4800]).expect("fits")
+    };
     let expected = grey(0.5);
     assert_eq!(unlike(&expected, &grey(0.501)), None);
     assert!(unlike(&expected, &grey(0.51)).is_some());

@@ -30,7 +30,8 @@ impl Split {
 /// What testing `count` items costs, where the test of a node costs 1: reaching the leaf, and each item.
 #[inline(always)]
 pub fn leaf_cost(count: usize) -> f32 {
-    LEAF_COST + ITEM_COST * count as f32
+    let (a, b, c) = *COSTS;
+    a + b * count as f32 + c * count.div_ceil(4) as f32
 }
 
 /// The cost of reaching a leaf.
@@ -137,3 +138,8 @@ impl<const N: usize> Bins<N> {
         (best.bin > 0).then_some(best)
     }
 }
+
+static COSTS: std::sync::LazyLock<(f32, f32, f32)> = std::sync::LazyLock::new(|| {
+    let get = |n: &str, d: f32| std::env::var(n).ok().and_then(|x| x.parse().ok()).unwrap_or(d);
+    (get("LA", 1.0), get("LB", 0.3), get("LC", 0.0))
+});

@@ -22,7 +22,10 @@ pub fn run(typed: &ManArgs) -> Result<(), Failure> {
         Some(wanted) => page_of(&program, wanted)?,
     };
     let mut roff = Vec::new();
+    let source = concat!("dotray ", env!("CARGO_PKG_VERSION"));
     Man::new(page)
+        .source(source)
+        .manual("dotray")
         .render(&mut roff)
         .map_err(|error| Failure::Failed(format!("cannot make the manual page: {error}")))?;
     put(&roff)

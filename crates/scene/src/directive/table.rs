@@ -57,7 +57,7 @@ const MATERIAL: Arguments = integer(&["m"], "number of the material, from 0; -1 
 const COUNT: Arguments = integer(&["n"], "how many follow; only a hint");
 
 /// All directives, in the order of [`Directive`].
-pub static DIRECTIVES: [Spec; 23] = [
+pub static DIRECTIVES: [Spec; 24] = [
     Spec {
         directive: Directive::Camera,
         word: "#camera",
@@ -312,6 +312,13 @@ pub static DIRECTIVES: [Spec; 23] = [
             ],
             "#vertex 0 -1 0  0 0 1  .5 0",
         )],
+    },
+    Spec {
+        directive: Directive::RayFileNum,
+        word: "#ray_file_num",
+        meaning: "The number of included files.",
+        origin: Origin::LaterCourses,
+        forms: &[form(&[COUNT], "#ray_file_num 1")],
     },
     Spec {
         directive: Directive::RayFile,

@@ -168,8 +168,11 @@ impl Parser<'_> {
         let word = spec.word;
         let at_word = self.span(start, after_word);
         if let [form] = spec.forms {
-            let error =
-                if count < form.count { missing(form, count, word).at(at_word) } else { self.surplus(form) };
+            let error = if count < form.count {
+                missing(form, count, word).at(at_word)
+            } else {
+                self.surplus(form, at_word)
+            };
             let error = error.note(usage(word, form));
             let uva = spec.directive == Directive::Material && count == 19;
             self.sink.error(match uva {
@@ -187,17 +190,14 @@ impl Parser<'_> {
         self.first_faulty_token();
     }
 
-    fn surplus(&self, form: &Form) -> Diagnostic {
-        let Call { spec, start, end, count, .. } = self.call;
-        let message = takes(spec.word, &takes_count(form), count);
-        let error = Diagnostic::error("argument-count", message);
-        match self.tokens.get(form.count) {
-            Some(token) if count == form.count + 1 => {
-                error.at(self.span(token.start, token.end)).label("one too many")
-            }
-            Some(token) => error.at(self.span(token.start, token.end)).label("the first one too many"),
-            None => error.at(self.span(start, end)),
-        }
+    fn surplus(&self, form: &Form, at_word: Span) -> Diagnostic {
+        let Call { spec, start, count, .. } = self.call;
+        let error = Diagnostic::error("argument-count", takes(spec.word, &takes_count(form), count));
+        let Some(token) = self.tokens.get(form.count) else { return error.at(at_word) };
+        let label = if count == form.count + 1 { "one too many" } else { "the first one too many" };
+        let error = error.at(self.span(token.start, token.end)).label(label);
+        let between = self.bytes.get(start..token.start).unwrap_or_default();
+        if between.contains(&b'\n') { error.note_at(at_word, "the directive stands here") } else { error }
     }
 
     /// Where the count is wrong, a word among the numbers is a second fault worth telling.

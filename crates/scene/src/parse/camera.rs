@@ -7,11 +7,29 @@ use crate::model::Attenuation;
 use crate::model::Camera;
 use crate::model::Light;
 use crate::model::Placed;
+use crate::span::FileId;
 use dotray_geometry::Vec3;
 use std::f64::consts::FRAC_PI_2;
 use std::f64::consts::PI;
 
 impl Parser<'_> {
+    /// Camera, lights and colours of an included file do not count, so what is wrong with their values does not, either.
+    fn view_counts(&self) -> bool {
+        self.file == FileId(0)
+    }
+
+    fn view_error(&mut self, diagnostic: Diagnostic) {
+        if self.view_counts() {
+            self.sink.error(diagnostic);
+        }
+    }
+
+    fn view_warning(&mut self, code: &'static str, make: impl FnOnce() -> Diagnostic) {
+        if self.view_counts() {
+            self.sink.warn(code, make);
+        }
+    }
+
     fn vector(&self, first: usize) -> Vec3 {
         Vec3::new(self.value(first), self.value(first + 1), self.value(first + 2))
     }
@@ -30,7 +48,7 @@ impl Parser<'_> {
         };
         let message = format!("the {what} of `{}` {fault}", self.call.spec.word);
         let span = self.arguments_span(first, 3);
-        self.sink.error(Diagnostic::error("zero-direction", message).at(span).label(label));
+        self.view_error(Diagnostic::error("zero-direction", message).at(span).label(label));
         None
     }
 
@@ -48,7 +66,7 @@ impl Parser<'_> {
             let span = self.arguments_span(6, 3);
             let error =
                 Diagnostic::error("parallel-up", "the camera's up vector is parallel to its view direction");
-            self.sink.error(error.at(span).label("does not say which side of the picture is up"));
+            self.view_error(error.at(span).label("does not say which side of the picture is up"));
             return;
         }
         if angle_fits {
@@ -62,7 +80,7 @@ impl Parser<'_> {
         let message = format!("the camera's half angle {half_angle} does not lie between 0 and π/2");
         let span = self.arguments_span(9, 1);
         let error = Diagnostic::error("half-angle", message).at(span);
-        self.sink.error(if half_angle >= FRAC_PI_2 {
+        self.view_error(if half_angle >= FRAC_PI_2 {
             let radians = half_angle * PI / 180.0;
             error.label("looks like degrees").help(format!(
                 "the angle is half of the vertical view angle, in radians: {half_angle} degrees are {radians:.4}"
@@ -92,7 +110,7 @@ impl Parser<'_> {
         let span = self.call_span();
         let Some(first) = first else { return set(self, span) };
         let word = self.call.spec.word;
-        self.sink.warn("repeated-directive", || {
+        self.view_warning("repeated-directive", || {
             Diagnostic::warning("repeated-directive", format!("a second `{word}` has no effect"))
                 .at(span)
                 .label("is not used")
@@ -111,7 +129,7 @@ impl Parser<'_> {
         };
         if let Some(fault) = fault {
             let (bytes, call) = (self.bytes, self.call_span());
-            self.sink.warn("attenuation", || {
+            self.view_warning("attenuation", || {
                 Diagnostic::warning("attenuation", fault)
                     .at(super::arguments::arguments_span(bytes, call, first, 3))
                     .label("where their sum is not above 0, the light does not fade")
@@ -148,7 +166,7 @@ impl Parser<'_> {
 
     fn odd_cutoff(&mut self, cutoff: f64) {
         let (bytes, call) = (self.bytes, self.call_span());
-        self.sink.warn("spot-angle", || {
+        self.view_warning("spot-angle", || {
             let message = format!("the spot's cut-off angle {cutoff} does not lie between 0 and π");
             let span = super::arguments::arguments_span(bytes, call, 12, 1);
             let warning = Diagnostic::warning("spot-angle", message).at(span);
@@ -174,9 +192,10 @@ impl Parser<'_> {
         let direction = self.direction_at(6, "normal");
         let radius = self.value(9);
         let attenuation = self.attenuation(10);
-        if !(radius > 0.0) {
+        if radius <= 0.0 {
             let message = format!("the lamp's radius {radius} is not above 0");
-            self.argument_error(9, "lamp-radius", message, "must be above 0");
+            let span = self.arguments_span(9, 1);
+            self.view_error(Diagnostic::error("lamp-radius", message).at(span).label("must be above 0"));
             return;
         }
         if let Some(direction) = direction {

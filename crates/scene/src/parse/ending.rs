@@ -57,6 +57,7 @@ impl Parser<'_> {
             (Directive::TextureNum, self.seen.textures, "textures"),
             (Directive::MaterialNum, self.seen.materials, "materials"),
             (Directive::VertexNum, self.seen.vertices, "vertices"),
+            (Directive::RayFileNum, self.seen.includes, "included files"),
         ];
         for (directive, found, whats) in kinds {
             let mut hints = self.hints.iter().filter(|hint| hint.directive == directive).peekable();
