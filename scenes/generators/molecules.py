@@ -2,7 +2,24 @@
 
 import math
 
-from .ray import Random, Ray, add, apply, cross, dot, length, mix, mul, product, ramp, rotate, scale, sub, translate, unit
+from .ray import (
+    Random,
+    Ray,
+    add,
+    apply,
+    cross,
+    dot,
+    length,
+    mix,
+    mul,
+    product,
+    ramp,
+    rotate,
+    scale,
+    sub,
+    translate,
+    unit,
+)
 
 CAFFEINE = """
 O 0.4700 2.5688 0.0006    O -3.1271 -0.4436 -0.0003  N -0.9686 -1.3125 0.0000   N 2.2182 0.1412 -0.0003
@@ -19,12 +36,11 @@ BOND = {"CH": 1.2, "CN": 1.55, "CO": 1.35, "CC": 1.6}
 def caffeine():
     """Ball and stick; bonds follow from the distances, double bonds from their lengths."""
     ray = Ray("Caffeine, C8H10N4O2: balls and sticks, coordinates in angstroms.", "  dotray render scenes/caffeine.ray")
-    ray.camera((2.6, 3.2, 15), (0.15, 0.1, 0), 31)
+    ray.camera((0, 3.0, 15), (0, 0.2, 0), 29)
     ray.background(0.1, 0.12, 0.16)
-    ray.ambient(0.3, 0.32, 0.36)
-    ray.area((0.72, 0.7, 0.66), (-7, 11, 8), (0, 0, 0), 2.2)
-    ray.point((0.22, 0.26, 0.34), (10, 4, 9))
-    ray.point((0.12, 0.12, 0.14), (0, 3, -3))
+    ray.ambient(0.34, 0.36, 0.4)
+    ray.area((0.76, 0.74, 0.7), (-7, 13, 8), (0, 0, 0), 2.4)
+    ray.point((0.26, 0.28, 0.32), (0, 3.0, 15))
     m = {
         "C": ray.gloss((0.2, 0.21, 0.23), 0.4, 0.5),
         "N": ray.gloss((0.16, 0.34, 0.82), 0.4, 0.45),
@@ -37,7 +53,7 @@ def caffeine():
 
     words = CAFFEINE.split()
     atoms = [(words[i], tuple(map(float, words[i + 1 : i + 4]))) for i in range(0, len(words), 4)]
-    pose = product(translate(0, 0.35, 0), rotate((0, 1, 0), -18), rotate((1, 0, 0), -14), rotate((0, 0, 1), 12))
+    pose = product(translate(0.3, 0.35, 0), rotate((0, 1, 0), -28), rotate((1, 0, 0), -14), rotate((0, 0, 1), 12))
     low = min(apply(pose, p)[1] - RADIUS[e] for e, p in atoms)
     ray.comment("the table and the wall")
     ray.box(floor, (0, low - 0.55, 0), (80, 0.5, 40))
@@ -60,33 +76,38 @@ def caffeine():
 
 
 def gyroid():
-    """Atoms of a face-centred lattice that lie in one half of a gyroid, in a cube with a corner cut away."""
-    ray = Ray("A sponge of atoms: lattice points on one side of the surface", "sin x cos y + sin y cos z + sin z cos x = 0.", "  dotray render scenes/gyroid.ray")
-    ray.camera((14.5, 11.5, 19), (0, -0.45, 0), 32)
+    """Atoms of a face-centred lattice near a gyroid, in a cube."""
+    ray = Ray(
+        "A sponge of atoms: the points of a lattice near the surface sin x cos y + sin y cos z + sin z cos x = 0.",
+        "  dotray render scenes/gyroid.ray",
+    )
+    ray.camera((13.5, 10.5, 20), (0.1, -0.8, 0), 32)
     ray.background(0.93, 0.93, 0.91)
     ray.ambient(0.36, 0.37, 0.4)
-    ray.area((0.62, 0.6, 0.56), (4, 26, 14), (0, 0, 0), 4)
-    ray.point((0.2, 0.2, 0.22), (22, 6, 10))
+    ray.area((0.56, 0.55, 0.52), (30, 90, 60), (0, 0, 0), 14)
+    ray.point((0.16, 0.16, 0.17), (13.5, 10.5, 20))
     stops = [(0.16, 0.18, 0.42), (0.13, 0.42, 0.56), (0.25, 0.66, 0.56), (0.93, 0.78, 0.36), (0.9, 0.42, 0.25)]
     palette = [ray.gloss(ramp(stops, k / 15), 0.22, 0.45) for k in range(16)]
-    floor = ray.gloss((0.93, 0.93, 0.91), 0.12, 0.7)
-    half, step = 5.0, 0.3
+    floor = ray.gloss((0.9, 0.9, 0.88), 0.12, 0.7)
+    half, step = 5.0, 0.2
     ray.box(floor, (0, -half - 0.45, 0), (400, 0.5, 400))
-    n = int(half / step)
+    n = round(half / step)
     for i in range(-n, n + 1):
         for j in range(-n, n + 1):
             for k in range(-n, n + 1):
                 if (i + j + k) % 2:
                     continue
                 x, y, z = i * step, j * step, k * step
-                if x > 0.3 and y > 0.3 and z > 0.3:
-                    continue
-                w = 2 * math.pi / 5.2
-                g = math.sin(w * x) * math.cos(w * y) + math.sin(w * y) * math.cos(w * z) + math.sin(w * z) * math.cos(w * x)
-                if not -0.62 < g < 0.0:
+                w = 2 * math.pi / 5
+                g = (
+                    math.sin(w * x) * math.cos(w * y)
+                    + math.sin(w * y) * math.cos(w * z)
+                    + math.sin(w * z) * math.cos(w * x)
+                )
+                if abs(g) > 0.28:
                     continue
                 t = (y + half) / (2 * half)
-                ray.sphere(palette[min(15, int(16 * t))], (x, y, z), 0.21)
+                ray.sphere(palette[min(15, int(16 * t))], (x, y, z), 0.145)
     ray.save("gyroid.ray")
 
 
@@ -126,15 +147,18 @@ def protein():
 
 
 def virus():
-    """A T=3 shell: 180 instances of one protein under the turns of the icosahedron, a window, and the strand inside."""
-    ray = Ray("The shell of a small virus: one protein, placed 180 times by the turns of the icosahedron.",
-              "Some subunits are left out, so that the strand inside shows.", "  dotray render scenes/virus.ray")
-    ray.camera((3, 5, 29), (0, 0, 0), 34)
-    ray.background(0.07, 0.1, 0.13)
-    ray.ambient(0.26, 0.28, 0.32)
-    ray.area((0.8, 0.77, 0.72), (-14, 17, 18), (0, 0, 0), 5)
-    ray.point((0.2, 0.26, 0.34), (22, -6, 12))
-    ray.point((0.3, 0.2, 0.12), (0, 0, 0), (1, 0.05, 0.02))
+    """A T=3 shell: three proteins for each turn of the icosahedron, a window in it, and the strand inside."""
+    ray = Ray(
+        "The shell of a small virus: one protein at 161 of the 180 places that the turns of the icosahedron give.",
+        "The others are left out, so that the strand inside shows.",
+        "  dotray render scenes/virus.ray",
+    )
+    ray.camera((0, 4, 29), (0, 0, 0), 32)
+    ray.background(0.09, 0.12, 0.16)
+    ray.ambient(0.32, 0.33, 0.36)
+    ray.area((0.74, 0.71, 0.66), (-12, 18, 22), (0, 0, 0), 5)
+    ray.area((0.3, 0.4, 0.55), (24, -10, -14), (0, 0, 0), 4)
+    ray.point((0.2, 0.2, 0.22), (0, 4, 29))
     subunit = ray.include("parts/protein.ray")
     strand = ray.gloss((0.35, 0.68, 0.72), 0.25, 0.4)
     strand2 = ray.gloss((0.62, 0.82, 0.7), 0.25, 0.4)
@@ -146,13 +170,13 @@ def virus():
     mid1, mid2 = unit(add(v0, v1)), unit(add(v0, v2))
     places = [unit(mix(v0, face, 0.42)), unit(mix(face, mid1, 0.52)), unit(mix(face, mid2, 0.52))]
     pose = product(rotate((0, 1, 0), 14), rotate((1, 0, 0), 24))
-    eye = unit((4.5, 3.2, 8.5))
+    eye = unit((3.2, 2.2, 8.5))
     with ray.group(pose):
         ray.comment("the shell")
         for turn in rotations_of_the_icosahedron():
             for kind, place in enumerate(places):
                 out = unit(apply(turn, place))
-                if dot(apply(pose, out), eye) > 0.8:
+                if dot(apply(pose, out), eye) > 0.79:
                     continue
                 x = unit(apply(turn, cross(place, v0)))
                 y = cross(out, x)

@@ -228,6 +228,18 @@ class Ray:
         with self.group(along(start, end)):
             self.cylinder(m, (0, 0, 0), r, length(sub(end, start)))
 
+    def planks(self, m, top, near, far, reach, width, seed):
+        """Boards along x from z = far to z = near. The wood's rings run around the axis of each board's group, which
+        lies under the board and is stretched, so that the grain is long."""
+        random = Random(seed)
+        z = near
+        while z > far:
+            depth, aside, stretch = random.real(0.5, 1.3), random.real(-0.5, 0.5) * width, 9
+            middle = translate(random.real(-2, 2), top - 0.1 - depth, z - width / 2 + aside)
+            with self.group(product(middle, rotate((0, 0, 1), -90), scale(1, stretch, 1))):
+                self.box(m, (-depth, 0, -aside), (0.2, (2 * reach + 6) / stretch, width - 0.012))
+            z -= width
+
     def vertex(self, p, n, st=(0, 0)):
         self.vertices.append(f"#vertex {nums(p, n, st)}")
         return len(self.vertices) - 1

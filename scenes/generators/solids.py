@@ -7,24 +7,31 @@ from .ray import Random, Ray, add, cross, mul, product, ramp, rotate, scale, tra
 
 def sphereflake(levels=4):
     """Haines' sphereflake: each ball carries nine of a third of its size, six around its waist and three on top."""
-    ray = Ray("Sphereflake after Eric Haines: 7381 balls, each with nine of a third of its size.", "  dotray render scenes/sphereflake.ray --recursion 6")
-    ray.camera((2.9, 2.3, 4.6), (0, 0.08, 0), 36)
+    ray = Ray(
+        "Sphereflake after Eric Haines: 7381 balls, each with nine of a third of its size.",
+        "  dotray render scenes/sphereflake.ray --recursion 6",
+    )
+    ray.camera((1.3, 1.2, 5.5), (0, 0.12, 0), 36.5)
     ray.background(0.4, 0.45, 0.52)
     ray.ambient(0.3, 0.3, 0.33)
-    ray.point((0.62, 0.58, 0.52), (5, 9, 6))
-    ray.point((0.2, 0.24, 0.32), (-7, 4, 2))
+    ray.point((0.85, 0.78, 0.66), (14, 16, 14))
     sky = ray.texture("textures/sky.png")
-    stops = [(0.95, 0.72, 0.35), (0.93, 0.6, 0.3), (0.85, 0.48, 0.3), (0.72, 0.42, 0.38), (0.6, 0.45, 0.5)]
-    gold = [ray.metal(stops[k], 0.38, 0.62) for k in range(levels + 1)]
-    board = ray.gloss((0.75, 0.75, 0.78), 0.3, 0.6, text="checker scale=.9 color=.95,.93,.9 color2=.3,.34,.42")
-    dome = ray.matte((3.1, 3.1, 2.9), sky)
-    ray.sphere(dome, (0, 0, 0), 60)
+    stops = [(0.86, 0.87, 0.9), (0.94, 0.86, 0.72), (0.97, 0.84, 0.6), (0.97, 0.8, 0.54), (0.96, 0.76, 0.5)]
+    gold = [ray.metal(stops[k], 0.2, 0.84) for k in range(levels + 1)]
+    board = ray.gloss((0.75, 0.75, 0.78), 0.3, 0.6, text="checker scale=.5 color=.95,.93,.9 color2=.26,.3,.38")
+    dome = ray.material((3.5, 3.4, 3.2), (0, 0, 0), texture=sky)
+    with ray.group(rotate((0, 1, 0), 60)):
+        ray.sphere(dome, (0, 0, 0), 60)
     ray.box(board, (0, -1.72, 0), (120, 0.1, 120))
 
     waist = [(math.cos(math.radians(60 * k)), 0, math.sin(math.radians(60 * k))) for k in range(6)]
     lift = math.radians(54.7356)
     top = [
-        (math.cos(lift) * math.cos(math.radians(30 + 120 * k)), math.sin(lift), math.cos(lift) * math.sin(math.radians(30 + 120 * k)))
+        (
+            math.cos(lift) * math.cos(math.radians(30 + 120 * k)),
+            math.sin(lift),
+            math.cos(lift) * math.sin(math.radians(30 + 120 * k)),
+        )
         for k in range(3)
     ]
 
@@ -38,24 +45,54 @@ def sphereflake(levels=4):
             way = add(add(mul(x, d[0]), mul(axis, d[1])), mul(z, d[2]))
             grow(level + 1, add(centre, mul(way, r * 4 / 3)), r / 3, way)
 
-    grow(0, (0, 0, 0), 1, (0, 1, 0))
+    with ray.group(rotate((0, 1, 0), 18)):
+        grow(0, (0, 0, 0), 1, (0, 1, 0))
     ray.save("sphereflake.ray")
 
 
 def nautilus(chambers=150):
     """A shell: every chamber stands in the group of the one before it, turned and shrunk."""
-    ray = Ray("A shell of nested groups: every chamber stands inside the group of the one before it,", "turned by 9 degrees and shrunk by 2.2 percent, 150 groups deep.", "  dotray render scenes/nautilus.ray")
-    ray.camera((0.6, 6.2, 10.5), (0.35, 1.05, 0), 33)
+    ray = Ray(
+        "A shell of nested groups: every chamber stands inside the group of the one before it,",
+        "turned by 9 degrees and shrunk by 2.2 percent, 150 groups deep.",
+        "  dotray render scenes/nautilus.ray",
+    )
+    ray.camera((-0.8, 2.7, 9.6), (0.1, 1.5, 0), 33)
     ray.background(0.5, 0.6, 0.66)
     ray.ambient(0.34, 0.34, 0.36)
-    ray.area((0.66, 0.62, 0.55), (-7, 11, 7), (0, 0, 0), 1.6)
-    ray.point((0.16, 0.2, 0.26), (9, 5, 8))
-    stops = [(0.93, 0.87, 0.78), (0.9, 0.7, 0.52), (0.8, 0.42, 0.28), (0.55, 0.22, 0.2), (0.82, 0.5, 0.36), (0.95, 0.9, 0.84)]
-    skin = [ray.gloss(ramp(stops, (0.5 - 0.5 * math.cos(2 * math.pi * k / 12)) * (0.75 if k % 2 else 1)), 0.3, 0.5) for k in range(12)]
-    rim = ray.metal((0.9, 0.75, 0.45), 0.4, 0.5)
-    sand = ray.matte((0.86, 0.76, 0.6), text="noise scale=3 octaves=6 color=1,1,1 color2=.62,.58,.52; bump scale=5 octaves=5 height=.05")
-    ray.box(sand, (0, -0.5, 0), (90, 1, 90))
-    pebbles = [ray.gloss(c, 0.2, 0.4, text="noise scale=6 color=1,1,1 color2=.55,.5,.5") for c in ((0.5, 0.5, 0.52), (0.62, 0.52, 0.45), (0.75, 0.74, 0.7))]
+    ray.area((0.72, 0.66, 0.55), (-14, 17, 14), (0, 0, 0), 2)
+    ray.point((0.14, 0.15, 0.17), (-0.8, 2.7, 9.6))
+    sky = ray.texture("textures/sky.png")
+    dome = ray.material((2.5, 2.5, 2.3), (0, 0, 0), texture=sky)
+    sea = ray.material(
+        (0.12, 0.3, 0.36), (0.1, 0.25, 0.3), (0.6, 0.62, 0.64), ks=0.7, text="bump scale=.7 octaves=3 height=.006"
+    )
+    stops = [
+        (0.93, 0.87, 0.78),
+        (0.9, 0.7, 0.52),
+        (0.8, 0.42, 0.28),
+        (0.55, 0.22, 0.2),
+        (0.82, 0.5, 0.36),
+        (0.95, 0.9, 0.84),
+    ]
+    skin = [
+        ray.gloss(ramp(stops, (0.5 - 0.5 * math.cos(2 * math.pi * k / 12)) * (0.75 if k % 2 else 1)), 0.3, 0.5)
+        for k in range(12)
+    ]
+    sand = ray.matte(
+        (0.86, 0.76, 0.6),
+        text="noise scale=3 octaves=6 color=1,1,1 color2=.8,.77,.72; bump scale=3 octaves=4 height=.025",
+    )
+    with ray.group(rotate((0, 1, 0), 30)):
+        ray.sphere(dome, (0, 0, 0), 120)
+    ray.comment("a beach that falls a little towards the sea")
+    with ray.group(rotate((1, 0, 0), -1.2)):
+        ray.box(sand, (0, -0.5, 0), (120, 1, 60))
+    ray.box(sea, (0, -0.72, -60), (240, 1, 110))
+    pebbles = [
+        ray.gloss(c, 0.2, 0.4, text="noise scale=6 color=1,1,1 color2=.55,.5,.5")
+        for c in ((0.5, 0.5, 0.52), (0.62, 0.52, 0.45), (0.75, 0.74, 0.7))
+    ]
     random = Random(3)
     ray.comment("pebbles")
     for k in range(46):
@@ -73,14 +110,13 @@ def nautilus(chambers=150):
         opened = 0
         for k in range(chambers):
             with_matrix = step if k else scale(1)
-            ray.line("#group_begin " + "  ".join(" ".join(f"{c:.6g}" for c in row) for row in with_matrix) + "  0 0 0 1")
+            ray.line(
+                "#group_begin " + "  ".join(" ".join(f"{c:.6g}" for c in row) for row in with_matrix) + "  0 0 0 1"
+            )
             opened += 1
             ray.depth = min(opened, 12)
             with ray.group(product(translate(1.55, 0, 0), scale(0.62, 0.3, 0.95))):
                 ray.sphere(skin[k % 12], (0, 0, 0), 1)
-            if k % 6 == 0:
-                with ray.group(translate(1.0, 0.06, 0)):
-                    ray.sphere(rim, (1.2, 0, 0), 0.07)
         ray.depth = 0
         for _ in range(opened):
             ray.line("#group_end")
@@ -88,20 +124,35 @@ def nautilus(chambers=150):
     ray.save("nautilus.ray")
 
 
+def lamp(ray, rgb):
+    """A paper lantern: it glows, and a little more where it faces the viewer."""
+    return ray.material((0, 0, 0), mul(rgb, 2.2), emissive=mul(rgb, 0.6))
+
+
 def mirrors():
     """A closed room whose walls, floor and ceiling are mirrors, full of lamps."""
-    ray = Ray("A closed room of mirrors: every wall repeats every lamp.", "  dotray render scenes/mirrors.ray --recursion 40 --cutoff 0.01")
+    ray = Ray(
+        "A closed room of mirrors: every wall repeats every lamp.",
+        "  dotray render scenes/mirrors.ray --recursion 40 --cutoff 0.01",
+    )
     ray.camera((1.55, 1.5, 2.2), (-0.9, 1.28, -1.5), 66)
     ray.background(0, 0, 0)
     ray.ambient(0.12, 0.12, 0.15)
-    ray.point((0.3, 0.3, 0.32), (0, 2.6, 0), (1, 0.1, 0.05))
-    wall = ray.material((0, 0, 0), (0, 0, 0), (0.9, 0.91, 0.93), ks=1)
-    floor = ray.material((0, 0, 0), (0, 0, 0), (0.6, 0.64, 0.7), ks=1, text="bump scale=2.2 octaves=3 height=.006")
+    ray.point((0.2, 0.2, 0.2), (1.55, 1.5, 2.2))
+    wall = ray.material((0, 0, 0), (0, 0, 0), (0.8, 0.83, 0.88), ks=1)
+    floor = ray.material((0, 0, 0), (0, 0, 0), (0.5, 0.54, 0.6), ks=1)
     frame = ray.metal((0.35, 0.33, 0.3), 0.3, 0.4)
-    wire = ray.gloss((0.25, 0.25, 0.26), 0.3, 0.3)
+    wire = ray.glow((0.1, 0.1, 0.11))
     ball = ray.metal((0.92, 0.93, 0.95), 0.05, 1)
-    stops = [(1.0, 0.42, 0.2), (1.0, 0.68, 0.3), (0.98, 0.9, 0.66), (0.45, 0.75, 0.95), (0.35, 0.45, 0.95), (0.85, 0.35, 0.75)]
-    lamps = [ray.glow(ramp(stops, k / 11)) for k in range(12)]
+    stops = [
+        (1.0, 0.42, 0.2),
+        (1.0, 0.68, 0.3),
+        (0.98, 0.9, 0.66),
+        (0.45, 0.75, 0.95),
+        (0.35, 0.45, 0.95),
+        (0.85, 0.35, 0.75),
+    ]
+    lamps = [lamp(ray, ramp(stops, k / 11)) for k in range(12)]
     w, h, d = 4.4, 3.0, 5.2
     ray.comment("mirrors: boxes with one edge of 0")
     ray.box(floor, (0, 0, 0), (w, 0, d))
@@ -116,16 +167,16 @@ def mirrors():
     ray.comment("lamps on wires")
     random = Random(21)
     placed = []
-    while len(placed) < 46:
+    while len(placed) < 17:
         p = (random.real(-1.9, 1.9), random.real(0.45, 2.55), random.real(-2.3, 2.3))
         if (p[0] - 1.55) ** 2 + (p[2] - 2.2) ** 2 < 1.7 or p[0] ** 2 + (p[1] - 0.9) ** 2 + p[2] ** 2 < 0.9:
             continue
-        if all(math.dist(p, q) > 0.42 for q in placed):
+        if all(math.dist(p, q) > 0.75 for q in placed):
             placed.append(p)
     for k, p in enumerate(placed):
-        r = 0.055 + 0.045 * random.real()
+        r = 0.1 + 0.1 * random.real()
         ray.sphere(lamps[k % 12], p, r)
-        ray.cylinder(wire, (p[0], (p[1] + h) / 2, p[2]), 0.004, h - p[1])
+        ray.cylinder(wire, (p[0], (p[1] + h) / 2, p[2]), 0.006, h - p[1])
     ray.comment("a mirror ball in the middle")
     ray.sphere(ball, (-0.15, 0.72, -0.25), 0.5)
     ray.cone(frame, (-0.15, 0.12, -0.25), 0.34, 0.24)

@@ -67,7 +67,9 @@ def test_card(size=128):
 
     def pixel(x, y):
         u, v = (x + 0.5) / size, (y + 0.5) / size
-        field = (0.95, 0.75 - 0.5 * v, 0.2 + 0.6 * u) if (x // 16 + y // 16) % 2 else (0.15 + 0.5 * u, 0.35, 0.85 - 0.5 * v)
+        field = (
+            (0.95, 0.75 - 0.5 * v, 0.2 + 0.6 * u) if (x // 16 + y // 16) % 2 else (0.15 + 0.5 * u, 0.35, 0.85 - 0.5 * v)
+        )
         if min(x, y, size - 1 - x, size - 1 - y) < 3:
             return (0.98, 0.96, 0.9)
         if abs(x - y) < 2:
@@ -128,10 +130,10 @@ def globe(width=512, height=256):
         polar = abs(v - 0.5) * 2
         if polar > 0.86 + 0.12 * (detail(u, v) - 0.5):
             colour = (0.93, 0.94, 0.95)
-        elif h > 0.525:
-            colour = ramp(shore, (h - 0.525) / 0.2)
+        elif h > 0.5:
+            colour = ramp(shore, (h - 0.5) / 0.2)
         else:
-            colour = mix((0.1, 0.25, 0.45), (0.35, 0.62, 0.72), max(0, 1 - (0.525 - h) * 6))
+            colour = mix((0.1, 0.25, 0.45), (0.35, 0.62, 0.72), max(0, 1 - (0.5 - h) * 6))
         on_line = min(u * 24 % 1, 1 - u * 24 % 1) < 0.025 or min(v * 12 % 1, 1 - v * 12 % 1) < 0.025
         return mix(colour, (0.25, 0.2, 0.15), 0.35) if on_line else colour
 
@@ -188,16 +190,16 @@ def porcelain(width=256, height=256):
 
 def sky(width=512, height=256):
     """An evening sky for the inside of a sphere: the upper half is air with thin clouds, the lower is haze."""
-    cloud = layers(71, 6, 6, 5)
+    cloud = layers(71, 8, 24, 4)
     stops = [(0.16, 0.28, 0.5), (0.3, 0.47, 0.68), (0.55, 0.68, 0.8), (0.88, 0.83, 0.76), (0.98, 0.8, 0.6)]
 
     def pixel(x, y):
         u, v = (x + 0.5) / width, (y + 0.5) / height
         if v > 0.5:
             return (0.75, 0.66, 0.58)
-        base = ramp(stops, (2 * v) ** 1.3)
-        streak = cloud(u, min(1, v * 3.2) if v < 0.31 else 0.99)
-        thick = max(0.0, min(1.0, (streak - 0.52) * 4)) * (1 - 2 * v) * 0.9
+        base = ramp(stops, min(1, (2 * v) ** 5))
+        streak = cloud(u, v * 2)
+        thick = max(0.0, min(1.0, (streak - 0.5) * 4)) * min(1, (1 - 2 * v) * 8) * 0.85
         return mix(base, (0.98, 0.93, 0.9), thick)
 
     write_png("sky.png", width, height, pixel)

@@ -20,7 +20,9 @@ pub fn path() -> &'static Path {
         let folder = test.parent().and_then(Path::parent).expect("target/PROFILE").to_owned();
         let program = folder.join(format!("dotray{}", std::env::consts::EXE_SUFFIX));
         // `cargo test --workspace` has built it; with this package alone it may be absent or old.
-        if modified(&program) < newest_source(&root().join("crates")) {
+        let newest =
+            SOURCES.iter().flat_map(|member| newest_below(&root().join("crates").join(member).join("src")));
+        if modified(&program) < newest.max() {
             build(&folder);
         }
         assert!(program.exists(), "no program at {}", program.display());
@@ -28,24 +30,33 @@ pub fn path() -> &'static Path {
     })
 }
 
+/// The members that the program is made of.
+const SOURCES: [&str; 6] = ["geometry", "image", "accel", "scene", "render", "cli"];
+
 fn modified(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).and_then(|meta| meta.modified()).ok()
 }
 
-fn newest_source(folder: &Path) -> Option<SystemTime> {
+fn newest_below(folder: &Path) -> Option<SystemTime> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let times = entries.map(|path| match path.file_name().and_then(|name| name.to_str()) {
-        Some("target" | "tests" | "benches" | "examples") => None,
-        Some(name) if name.ends_with(".rs") || name == "Cargo.toml" => modified(&path),
-        Some(_) | None => newest_source(&path),
-    });
-    times.max().flatten()
+    entries.filter_map(|path| if path.is_dir() { newest_below(&path) } else { modified(&path) }).max()
 }
 
 fn build(profile_folder: &Path) {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["build", "--locked", "--package", "dotray", "--bin", "dotray"]).current_dir(root());
+    // With this package beside it, the same features are chosen as for the tests, and little is built anew.
+    command.args([
+        "build",
+        "--locked",
+        "--package",
+        "dotray",
+        "--package",
+        "dotray-tests",
+        "--bin",
+        "dotray",
+    ]);
+    command.current_dir(root());
     command.arg("--target-dir").arg(profile_folder.parent().expect("target"));
     if profile_folder.ends_with("release") {
         command.arg("--release");

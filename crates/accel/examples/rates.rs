@@ -46,7 +46,7 @@ struct Rays<'a> {
     any: bool,
     hits: u64,
     sum: f64,
-    nearest: f64,
+    nearest: [f64; 256],
     boxes: u64,
 }
 
@@ -90,12 +90,12 @@ impl Batch for Rays<'_> {
         let query = &self.queries[i];
         let first = first as usize;
         // Spheres behind the leaf's own are other leaves': testing them as well does no harm.
-        let mut t = four(simd, self.spheres, first, query, t_max);
-        if count > 4 {
-            t = four(simd, self.spheres, first + 4, query, t);
+        let mut t = t_max;
+        for first in (first..first + count as usize).step_by(4) {
+            t = four(simd, self.spheres, first, query, t);
         }
         if t < t_max {
-            self.nearest = t;
+            self.nearest[i] = t;
             if self.any {
                 return f64::NEG_INFINITY;
             }
@@ -115,11 +115,10 @@ impl Batch for Rays<'_> {
     #[inline(always)]
     fn finished(&mut self, i: usize, box_tests: u64) {
         self.boxes += box_tests;
-        if self.nearest < self.queries[i].t_max {
+        if self.nearest[i] < self.queries[i].t_max {
             self.hits += 1;
-            self.sum += if self.any { 0.0 } else { self.nearest };
+            self.sum += if self.any { 0.0 } else { self.nearest[i] };
         }
-        self.nearest = f64::INFINITY;
     }
 }
 
@@ -139,15 +138,8 @@ fn rate(accelerator: &Accelerator, spheres: &Spheres, queries: &[Query], any: bo
         let before = seconds(start);
         let (mut hits, mut sum, mut boxes) = (0, 0.0, 0);
         for queries in queries.chunks(256) {
-            let mut rays = Rays {
-                spheres,
-                queries,
-                any,
-                hits: 0,
-                sum: 0.0,
-                nearest: f64::INFINITY,
-                boxes: 0,
-            };
+            let mut rays =
+                Rays { spheres, queries, any, hits: 0, sum: 0.0, nearest: [f64::INFINITY; 256], boxes: 0 };
             accelerator.walk(level(), &mut rays);
             (hits, sum, boxes) = (hits + rays.hits, sum + rays.sum, boxes + rays.boxes);
         }

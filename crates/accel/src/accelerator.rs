@@ -17,7 +17,7 @@ use crate::input::MAX_ITEMS;
 use crate::input::Settings;
 use crate::narrow::Frame;
 use crate::octree::Octree;
-use crate::query::Batch;
+use crate::batch::Batch;
 use crate::simd::Level;
 use crate::simd::dispatch;
 use crate::stats::Defect;
@@ -161,6 +161,21 @@ impl Accelerator {
             }
             Structure::Octree(octree) => dispatch!(level, simd => octree.walk(simd, batch)),
             Structure::Bsp(bsp) => dispatch!(level, simd => bsp.walk(simd, batch)),
+        }
+    }
+}
+
+impl Accelerator {
+    /// The same as [`Accelerator::walk`], for rays that start and run alike (neighbours from the eye, or from a
+    /// surface to one light): they share the reading of nodes and leaves. Any rays give the same answers, only slower.
+    pub fn walk_together<B: Batch>(&self, level: Level, batch: &mut B) {
+        match &self.structure {
+            Structure::Tree(tree) if batch.len() > 1 => {
+                dispatch!(level, simd => bvh::beam::walk(simd, tree, batch));
+            }
+            Structure::Tree(_) | Structure::Brute | Structure::Octree(_) | Structure::Bsp(_) => {
+                self.walk(level, batch);
+            }
         }
     }
 }

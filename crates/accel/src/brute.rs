@@ -1,6 +1,6 @@
 //! Every item is tested: the reference for the other four.
 
-use crate::query::Batch;
+use crate::batch::Batch;
 use crate::simd::Simd;
 
 /// As many rays share a block of items while it is in cache.

@@ -17,7 +17,7 @@ use crate::cells::touches;
 use crate::clip::ClippedRay;
 use crate::input::Boxes;
 use crate::input::Kind;
-use crate::query::Batch;
+use crate::batch::Batch;
 use crate::simd::Simd;
 use crate::stats::Defect;
 use crate::stats::Stats;

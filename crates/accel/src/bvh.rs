@@ -14,5 +14,7 @@ pub mod check;
 
 pub mod walk;
 
+pub mod beam;
+
 pub use build::Builder;
 pub use wide::{Child, Tree};

@@ -4,7 +4,7 @@
 //! that a ray has met leaves most repetitions out.
 
 use crate::input::Boxes;
-use crate::query::Batch;
+use crate::batch::Batch;
 use crate::simd::Simd;
 use crate::stats::Defect;
 use dotray_geometry::Aabb;

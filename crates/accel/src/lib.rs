@@ -5,7 +5,59 @@
 //! the new upper bound of t from the answer. Which kind, SIMD level or number of threads is chosen cannot change
 //! what the callbacks find: single precision only rules boxes out, with a bound derived in [`narrow`].
 //!
+//! ```
+//! use dotray_accel::simd::{Simd, level};
+//! use dotray_accel::{Accelerator, Batch, Boxes, Kind, Query, Settings};
+//! use dotray_geometry::{Aabb, Ray, Vec3};
+//!
+//! /// A row of unit cubes, which are their own boxes.
+//! struct Row(u32);
+//!
+//! impl Boxes for Row {
+//!     fn len(&self) -> u32 {
+//!         self.0
+//!     }
+//!
+//!     fn bounds(&self, item: u32) -> Aabb {
+//!         let corner = Vec3::new(2.0 * f64::from(item), 0.0, 0.0);
+//!         Aabb::new(corner, corner + 1.0)
+//!     }
+//! }
+//!
+//! /// One ray along the row, and the items it is shown.
+//! struct Look(Vec<u32>);
+//!
+//! impl Batch for Look {
+//!     fn len(&self) -> usize {
+//!         1
+//!     }
+//!
+//!     fn query(&self, _: usize) -> Query {
+//!         Query { ray: Ray::new(Vec3::new(-1.0, 0.5, 0.5), Vec3::X), t_min: 0.0, t_max: 4.5 }
+//!     }
+//!
+//!     fn leaf_range<S: Simd>(&mut self, simd: S, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
+//!         let items: Vec<_> = (first..first + count).collect();
+//!         self.leaf_list(simd, i, &items, t_max)
+//!     }
+//!
+//!     fn leaf_list<S: Simd>(&mut self, _: S, _: usize, items: &[u32], t_max: f64) -> f64 {
+//!         self.0.extend(items);
+//!         t_max // nothing nearer was found
+//!     }
+//!
+//!     fn finished(&mut self, _: usize, _: u64) {}
+//! }
+//!
+//! let built = Accelerator::build(Kind::Octree, &Row(100), &[], &Settings::default());
+//! let mut look = Look(Vec::new());
+//! built.accelerator.walk(level(), &mut look);
+//! assert!([0, 1].iter().all(|item| look.0.contains(item)) && look.0.len() < 20);
+//! ```
+//!
 //! The order of the `mod` lines is the floor order: a module uses only modules listed above it.
+
+#![allow(clippy::needless_range_loop, reason = "a loop over the axes reads several arrays at the same place")]
 
 pub mod simd;
 
@@ -18,6 +70,10 @@ pub mod stats;
 pub mod clip;
 
 pub mod narrow;
+
+pub mod packet;
+
+pub mod batch;
 
 mod brute;
 
@@ -35,6 +91,7 @@ pub mod accelerator;
 
 pub use accelerator::{Accelerator, Built};
 pub use input::{Boxes, GroupEvent, Kind, MAX_ITEMS, Quality, Settings};
-pub use query::{Batch, Query};
+pub use batch::Batch;
+pub use query::Query;
 pub use simd::Level;
 pub use stats::{Defect, Stats};

@@ -111,6 +111,37 @@ impl Frame {
         }
     }
 
+    /// How long one unit of the world is in the frame.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// A point of the world, rounded to nearest.
+    #[inline(always)]
+    pub fn point(&self, point: Vec3) -> [f32; 3] {
+        ((point - self.center) * self.scale).to_array().map(|x| x as f32)
+    }
+
+    /// Where a ray enters the scene, rounded to nearest.
+    #[inline(always)]
+    pub fn point_on(&self, ray: &ClippedRay) -> [f32; 3] {
+        let center = self.center.to_array();
+        [0, 1, 2].map(|axis| {
+            ((ray.origin[axis] - center[axis] + ray.start * ray.direction[axis]) * self.scale) as f32
+        })
+    }
+
+    /// The factor that makes exits larger.
+    pub(crate) fn widening(&self) -> f64 {
+        1.0 + self.slack.relative
+    }
+
+    /// The pad of a ray's origin along an axis, at least.
+    pub(crate) fn pad(&self, origin: f32, slack: f64) -> f32 {
+        let pad = 2.0 * self.slack.relative * f64::from(origin.abs()) + slack * self.slack.absolute * self.scale;
+        (pad as f32).next_up()
+    }
+
     /// The ray from where it enters the scene.
     #[inline(always)]
     pub fn narrow_ray(&self, ray: &ClippedRay) -> NarrowRay {
@@ -124,7 +155,7 @@ impl Frame {
             start: ray.start,
             scale: self.scale,
             slack: ray.slack * self.slack.absolute,
-            widening: 1.0 + self.slack.relative,
+            widening: self.widening(),
         };
         for axis in 0..3 {
             let inverse = ray.inverse[axis];
@@ -165,10 +196,16 @@ impl NarrowRay {
     /// The t' up to which boxes count where the nearest hit lies at `t_max` in the world.
     #[inline(always)]
     pub fn bound(&self, t_max: f64) -> f32 {
-        let t = (t_max - self.start + self.slack) * self.scale * self.widening;
-        // A NaN, from infinities on both sides, rules nothing out.
-        if t.is_nan() { f32::INFINITY } else { (t as f32).next_up() }
+        bound_in_frame(t_max, self.start, self.slack, self.scale, self.widening)
     }
+}
+
+/// See [`NarrowRay::bound`].
+#[inline(always)]
+pub fn bound_in_frame(t_max: f64, start: f64, slack: f64, scale: f64, widening: f64) -> f32 {
+    let t = (t_max - start + slack) * scale * widening;
+    // A NaN, from infinities on both sides, rules nothing out.
+    if t.is_nan() { f32::INFINITY } else { (t as f32).next_up() }
 }
 
 /// The largest single that is not above `x`.

@@ -5,6 +5,7 @@
 //! counted from the side where the ray comes from. We depart from it in testing each octant's padded slab instead of
 //! finding the next one from the last exit: so rays that run exactly in a middle plane, and rounding, lose no cell.
 
+use crate::batch::Batch;
 use crate::cells::Cut;
 use crate::cells::Leaf;
 use crate::cells::MAX_DEPTH;
@@ -18,7 +19,6 @@ use crate::cells::touches;
 use crate::clip::ClippedRay;
 use crate::input::Boxes;
 use crate::input::Kind;
-use crate::query::Batch;
 use crate::simd::Simd;
 use crate::stats::Defect;
 use crate::stats::Stats;
@@ -55,9 +55,13 @@ struct Entry {
 impl Octree {
     /// Builds over `boxes`, whose union is `scene`.
     pub fn build(boxes: &impl Boxes, scene: Aabb) -> Self {
-        let half = Vec3::splat(scene.size().max_element() * 0.5);
-        // The union keeps what rounding might take from the cube around the centre.
-        let cube = Aabb::new(scene.center() - half, scene.center() + half).union(scene);
+        // The cube is a quarter larger than the scene and off its centre: scenes are often symmetric, and what stands
+        // across a middle plane stands in several cells from the first cut on.
+        let size = scene.size().max_element();
+        let center = scene.center() + Vec3::splat(0.075 * size);
+        let half = Vec3::splat(0.625 * size);
+        // The union keeps what rounding might take from the cube.
+        let cube = Aabb::new(center - half, center + half).union(scene);
         let cut = |pending: &Pending| cut(boxes, pending);
         let (nodes, references) = grow(boxes.len(), cube, cut, |(), first| Node::Cut { first }, Node::Leaf);
         Self { scene, cube, nodes, references, items: boxes.len() }

@@ -43,7 +43,7 @@ fn hard_rays(scene: &Scene<Sphere>, count: usize, seed: u64) -> Vec<Query> {
             // From far away.
             3 => {
                 let direction = random.direction();
-                let distance = libm_pow10(random.between(4.0, 8.0));
+                let distance = about_power_of_ten(random.between(4.0, 8.0));
                 query(aim - direction * distance, direction)
             }
             // Next to where the sphere touches its box, in the box's plane or almost.
@@ -75,7 +75,7 @@ fn hard_rays(scene: &Scene<Sphere>, count: usize, seed: u64) -> Vec<Query> {
 }
 
 /// Ten to the power of `x`, near enough.
-fn libm_pow10(x: f64) -> f64 {
+fn about_power_of_ten(x: f64) -> f64 {
     let whole = x.floor();
     (0..whole as i32).fold(1.0 + 9.0 * (x - whole), |product, _| product * 10.0)
 }
@@ -248,7 +248,7 @@ fn a_million_items_in_one_place() {
 fn sizes_that_fool_every_cut() {
     // Each item is twice as far out and twice as large as the one before: bins part off one at a time.
     let item = |i: i32| {
-        let size = libm_pow2(i);
+        let size = power_of_two(i);
         Sphere { center: Vec3::new(size, size * 0.5, -size), radius: size * 0.1 }
     };
     let scene = Scene((-300..300).map(item).flat_map(|sphere| [sphere; 3]).collect());
@@ -256,7 +256,7 @@ fn sizes_that_fool_every_cut() {
 }
 
 /// Two to the power of `x`.
-fn libm_pow2(x: i32) -> f64 {
+fn power_of_two(x: i32) -> f64 {
     f64::from_bits(((1023 + x) as u64) << 52)
 }
 
@@ -306,7 +306,7 @@ proptest! {
         let snap = |point: Vec3| if grid { (point * 8.0).round() / 8.0 } else { point };
         let item = |random: &mut Random| {
             let corner = snap(random.point());
-            Aabb::new(corner, corner + snap(random.point() * libm_pow2(size)))
+            Aabb::new(corner, corner + snap(random.point() * power_of_two(size)))
         };
         let scene = Scene((0..count).map(|_| item(&mut random)).collect());
         let ray = |random: &mut Random| {

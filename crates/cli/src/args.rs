@@ -46,7 +46,12 @@ Exit codes:
   0    done
   1    the scene, the picture or a file is at fault; nothing was written
   2    the command line is at fault; nothing was read
-  130  interrupted (Ctrl-C); nothing was written";
+  130  interrupted (Ctrl-C); nothing was written
+
+Environment:
+  NO_COLOR     if set, no colour in messages
+  DOTRAY_SIMD  a lower level of vector instructions (scalar, sse2, sse4.2, avx2, avx512, neon); the
+               picture does not depend on it";
 
 /// The commands.
 #[derive(Debug, Subcommand)]

@@ -21,8 +21,8 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::exit::Failure;
+use crate::meaning::Place;
 use crate::messages::Messages;
-use crate::plan::Place;
 
 /// The disk with a clock: what reading took.
 #[derive(Debug, Default)]

@@ -12,6 +12,8 @@ mod exit;
 
 mod meaning;
 
+mod storage;
+
 mod plan;
 
 mod messages;

@@ -5,12 +5,30 @@ use dotray::accel::Quality;
 use dotray::image::Format;
 use dotray::render::Shadows;
 use dotray::render::TextureFilter;
+use std::path::Path;
+use std::path::PathBuf;
 
 use crate::values::Accel;
 use crate::values::Build;
 use crate::values::Filter;
 use crate::values::FormatName;
 use crate::values::ShadowMode;
+
+/// A file, or the standard stream that `-` stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Standard input or output.
+    Standard,
+    /// A file.
+    File(PathBuf),
+}
+
+impl Place {
+    /// What a typed path means.
+    pub fn of(path: &Path) -> Self {
+        if path == Path::new("-") { Self::Standard } else { Self::File(path.to_owned()) }
+    }
+}
 
 /// The format of a name.
 pub fn named(name: FormatName) -> Format {

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::exit::Failure;
 use crate::exit::put;
-use crate::plan::Place;
+use crate::meaning::Place;
 
 /// Whether the picture will have a place: an existing folder that takes files, and no terminal.
 pub fn check(output: &Place, input: &Place) -> Result<(), Failure> {

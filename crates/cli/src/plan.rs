@@ -8,31 +8,15 @@ use dotray::render::Crop;
 use dotray::render::Options;
 use dotray::render::PrepareOptions;
 use std::fmt::Display;
-use std::path::Path;
 use std::path::PathBuf;
 
 use crate::exit::Failure;
 use crate::meaning;
+use crate::meaning::Place;
 use crate::render_args::RenderArgs;
+use crate::storage;
 use crate::values::Aa;
-use crate::values::Depth;
 use crate::values::TextOrJson;
-
-/// A file, or the standard stream that `-` stands for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Standard input or output.
-    Standard,
-    /// A file.
-    File(PathBuf),
-}
-
-impl Place {
-    /// What a typed path means.
-    pub fn of(path: &Path) -> Self {
-        if path == Path::new("-") { Self::Standard } else { Self::File(path.to_owned()) }
-    }
-}
 
 /// All that `dotray render` is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,8 +49,8 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
     let input = Place::of(input);
     let output = either("picture", "--output", typed.output.as_ref(), typed.output_option.as_ref(), shown)?;
     let output_is_default = output.is_none();
-    let output = output.map_or_else(|| default_output(&input), |path| Place::of(path));
-    let format = format(typed, &output)?;
+    let output = output.map_or_else(|| storage::default_output(&input), |path| Place::of(path));
+    let format = storage::format(typed, &output)?;
     let options = options(typed)?;
     options.validate()?;
     let limits = limits(typed, &options)?;
@@ -76,8 +60,8 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
         threads: options.threads,
         image_limits: limits,
     };
-    let encode = encode_options(typed, format)?;
-    check_jpeg_edge(format, &options)?;
+    let encode = storage::encode_options(typed, format)?;
+    storage::check_jpeg_edge(format, &options)?;
     let (quiet, stats) = (typed.quiet, typed.stats);
     Ok(Plan { input, output, output_is_default, format, encode, options, prepare, quiet, stats })
 }
@@ -107,53 +91,6 @@ fn number<T: Copy + Display>(
     named: Option<T>,
 ) -> Result<Option<T>, Failure> {
     either(what, option, placed, named, |value| value.to_string())
-}
-
-/// IN's name with the extension of the best format that this build has, in the working directory.
-fn default_output(input: &Place) -> Place {
-    match input {
-        Place::Standard => Place::Standard,
-        Place::File(path) => {
-            let name = path.file_name().unwrap_or("picture".as_ref());
-            Place::File(Path::new(name).with_extension(extension(default_format())))
-        }
-    }
-}
-
-fn default_format() -> Format {
-    if Format::Png.is_built() { Format::Png } else { Format::Bmp }
-}
-
-fn extension(format: Format) -> &'static str {
-    format.extensions().first().copied().unwrap_or("png")
-}
-
-fn format(typed: &RenderArgs, output: &Place) -> Result<Format, Failure> {
-    let format = match (typed.format, output) {
-        (Some(name), Place::Standard | Place::File(_)) => meaning::named(name),
-        (None, Place::Standard) => default_format(),
-        (None, Place::File(path)) => {
-            Format::from_path(path).map_err(|error| Failure::Usage(format!("{error} (or say --format)")))?
-        }
-    };
-    let deeper = match (typed.depth, format) {
-        (Some(Depth::Sixteen), Format::Png | Format::Png16) | (None, Format::Png16) => Format::Png16,
-        (Some(Depth::Eight), Format::Png16) => {
-            return Err(Failure::Usage("--format png16 and --depth 8 contradict each other".to_owned()));
-        }
-        (Some(Depth::Sixteen), other) => {
-            let name = other.name();
-            return Err(Failure::Usage(format!(
-                "--depth 16 goes with PNG only; the picture would be {name}"
-            )));
-        }
-        (Some(Depth::Eight) | None, other) => other,
-    };
-    if deeper.is_built() {
-        Ok(deeper)
-    } else {
-        Err(Failure::Usage(format!("{} is left out of this build", deeper.name())))
-    }
 }
 
 fn options(typed: &RenderArgs) -> Result<Options, Failure> {
@@ -219,31 +156,6 @@ fn limits(typed: &RenderArgs, options: &Options) -> Result<Limits, Failure> {
     Ok(Limits { max_pixels, max_bytes: defaults.max_bytes.max(max_pixels.saturating_mul(16)) })
 }
 
-/// The one format whose edges are shorter than those of a picture: told now, not after the rays.
-fn check_jpeg_edge(format: Format, options: &Options) -> Result<(), Failure> {
-    let window = options.window();
-    let longest = window.width.max(window.height);
-    if format == Format::Jpeg && longest > u32::from(u16::MAX) {
-        let most = u16::MAX;
-        return Err(Failure::Usage(format!(
-            "a JPEG has at most {most} columns and rows; asked for are {longest}"
-        )));
-    }
-    Ok(())
-}
-
-fn encode_options(typed: &RenderArgs, format: Format) -> Result<EncodeOptions, Failure> {
-    let defaults = EncodeOptions::default();
-    if typed.jpeg_quality.is_some() && format != Format::Jpeg {
-        let name = format.name();
-        return Err(Failure::Usage(format!(
-            "--jpeg-quality goes with JPEG only; the picture would be {name}"
-        )));
-    }
-    let jpeg_quality = typed.jpeg_quality.unwrap_or(defaults.jpeg_quality);
-    Ok(EncodeOptions { srgb: typed.srgb, jpeg_quality, ..defaults })
-}
-
 fn antialias(typed: &RenderArgs) -> Result<Antialias, Failure> {
     let idle = typed.aa_threshold.map(|_| "--aa-threshold").or(typed.aa_depth.map(|_| "--aa-depth"));
     match (typed.aa, idle) {
@@ -262,16 +174,15 @@ fn antialias(typed: &RenderArgs) -> Result<Antialias, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::values::Depth;
     use crate::values::FormatName;
     use crate::values::Size;
 
     fn planned(change: impl FnOnce(&mut RenderArgs)) -> Result<Plan, String> {
         let mut typed = RenderArgs { input: Some(PathBuf::from("folder/a.ray")), ..RenderArgs::default() };
         change(&mut typed);
-        plan(&typed).map_err(|failure| match failure {
-            Failure::Usage(message) => message,
-            other => format!("no usage error: {other:?}"),
-        })
+        plan(&typed)
+            .map_err(|failure| if let Failure::Usage(message) = failure { message } else { String::new() })
     }
 
     fn size_of(change: impl FnOnce(&mut RenderArgs)) -> Result<(u32, u32), String> {

@@ -18,7 +18,7 @@ pub fn markdown(program: &mut Command) -> String {
     for command in program.get_subcommands().filter(|command| command.get_name() != "help") {
         page(command, &mut text);
     }
-    text.push_str("\n");
+    text.push('\n');
     text.push_str(STATISTICS);
     text
 }
@@ -37,7 +37,7 @@ fn page(command: &Command, text: &mut String) {
         }
     }
     for wanted in headings {
-        let _ = writeln!(text, "\n{wanted}\n");
+        let _ = writeln!(text, "\n### {wanted}\n");
         for argument in shown.iter().filter(|argument| heading(argument) == wanted) {
             item(argument, text);
         }
@@ -61,7 +61,11 @@ fn item(argument: &Arg, text: &mut String) {
     let values: Vec<&str> =
         argument.get_value_names().unwrap_or_default().iter().map(|name| name.as_str()).collect();
     let takes_value = argument.get_action().takes_values();
-    let value = if takes_value { format!(" {}", values.join(" ")) } else { String::new() };
+    let value = match (takes_value, argument.is_require_equals_set()) {
+        (false, _) => String::new(),
+        (true, false) => format!(" {}", values.join(" ")),
+        (true, true) => format!("[={}]", values.join(" ")),
+    };
     let short = argument.get_short().map(|letter| format!("-{letter}"));
     let long = argument.get_long().map(|word| format!("--{word}"));
     let aliases =
@@ -69,7 +73,8 @@ fn item(argument: &Arg, text: &mut String) {
     let names: Vec<String> = short.into_iter().chain(long).chain(aliases).collect();
     let name = if names.is_empty() { values.join(" ") } else { names.join(", ") + &value };
     let help = plain(argument.get_long_help().or(argument.get_help()));
-    let _ = write!(text, "- `{name}`: {}", help.replace('\n', " "));
+    let stop = if help.ends_with(['.', ']', ')']) { "" } else { "." };
+    let _ = write!(text, "- `{name}`: {}{stop}", help.replace('\n', " "));
     let possible: Vec<_> = argument.get_possible_values().into_iter().filter(|v| !v.is_hide_set()).collect();
     if takes_value && !possible.is_empty() {
         let words = possible.iter().map(|value| match value.get_help() {

@@ -165,7 +165,7 @@ fn ctrl_c_stops_and_leaves_nothing() {
     std::thread::sleep(Duration::from_millis(500));
     let sent = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     if !sent.is_ok_and(|status| status.success()) {
-        let _ = child.kill();
+        child.kill().and_then(|()| child.wait()).unwrap();
         println!("skipped, no program `kill`");
         return;
     }

@@ -85,7 +85,7 @@ fn manual_pages_and_completions_name_every_command() {
     }
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let script = folder.run(&format!("completions {shell}")).expect(0).text();
-        for word in ["render", "texture-filter", "octree"] {
+        for word in ["render", "texture-filter", "jpeg-quality"] {
             assert!(script.contains(word), "{shell}: no {word}");
         }
     }

@@ -40,6 +40,16 @@ pub enum ShapeError {
 }
 
 /// A shape in its object coordinates.
+///
+/// ```
+/// use dotray_geometry::{Ray, Shape, Sphere, Vec3};
+///
+/// let shape = Shape::Sphere(Sphere::new(Vec3::ZERO, 1.0)?);
+/// let ray = Ray::new(Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z);
+/// let hit = shape.intersect(&ray, 0.0, f64::INFINITY).expect("the ray aims at the sphere");
+/// assert_eq!((hit.t, shape.surface(&ray, hit).geometric_normal), (4.0, Vec3::Z));
+/// # Ok::<(), dotray_geometry::ShapeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// A sphere.

@@ -42,7 +42,8 @@ pub(crate) fn decode(file: &[u8], limits: &Limits) -> Result<Image, ImageError> 
         Kind::Bitmap => 1,
         Kind::Grey | Kind::Colour => bytes.decimal("the greatest value", 65535)?,
     };
-    let (width, height) = limits.check(u64::from(width), u64::from(height), 12)?;
+    // Grey samples stand beside the three that they become.
+    let (width, height) = limits.check(u64::from(width), u64::from(height), 16)?;
     let per_pixel = if kind == Kind::Colour { 3 } else { 1 };
     let values = width * height * per_pixel;
     let samples = match (binary, kind) {
@@ -66,16 +67,22 @@ fn binary_values(bytes: &mut Bytes<'_>, values: usize, max: u32) -> Result<Vec<f
         Ok(needed) => bytes.take(needed, "the pixels")?,
         Err(_) => return Err(bytes.truncated("the pixels", needed)),
     };
-    let mut samples = Vec::with_capacity(values);
-    for (place, value) in stored.chunks_exact(width).enumerate() {
+    let samples = match width {
+        1 => scaled(stored.iter().copied().map(u32::from), max),
         // The most significant byte comes first.
-        let value = value.iter().fold(0, |value, &byte| value << 8 | u32::from(byte));
-        if value > max {
-            return Err(bytes.invalid(start + place * width, "a sample", value, format!("at most {max}")));
-        }
-        samples.push(value as f32 / max as f32);
+        _ => scaled(stored.as_chunks::<2>().0.iter().map(|&pair| u16::from_be_bytes(pair).into()), max),
+    };
+    samples.map_err(|(place, value)| {
+        bytes.invalid(start + place * width, "a sample", value, format!("at most {max}"))
+    })
+}
+
+/// The values as shares of the greatest one, or the first that is greater than that, with its place.
+fn scaled(values: impl Iterator<Item = u32> + Clone, max: u32) -> Result<Vec<f32>, (usize, u32)> {
+    match values.clone().enumerate().find(|(_, value)| *value > max) {
+        Some(fault) => Err(fault),
+        None => Ok(values.map(|value| value as f32 / max as f32).collect()),
     }
-    Ok(samples)
 }
 
 /// One bit a pixel, the leftmost in the highest bit, rows filled up to whole bytes.

@@ -185,7 +185,8 @@ pub(crate) fn encode(
         };
         // Measured: adaptive filters take 2.5 ms a megapixel, a fixed one 1.7 to 2.1 and up to twice the bytes.
         let png = |file| PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive);
-        let sink = Cursor::new(&mut file);
+        // The encoders write a few bytes at a time, which a vector takes much faster than a cursor on it.
+        let sink = &mut file;
         let result = match raster {
             Raster::Png => png(sink).write_image(&bytes_of(image, srgb), width, height, eight),
             Raster::Png16 => png(sink).write_image(&words_of(image, srgb), width, height, sixteen),
@@ -196,7 +197,9 @@ pub(crate) fn encode(
                 ExtendedColorType::Rgb8,
             ),
             Raster::Qoi => QoiEncoder::new(sink).write_image(&bytes_of(image, srgb), width, height, eight),
-            Raster::Tiff => TiffEncoder::new(sink).write_image(&bytes_of(image, srgb), width, height, eight),
+            Raster::Tiff => {
+                TiffEncoder::new(Cursor::new(sink)).write_image(&bytes_of(image, srgb), width, height, eight)
+            }
         };
         result.map_err(|error| error.to_string())
     });

@@ -21,6 +21,8 @@ pub mod texture;
 
 pub mod light;
 
+mod cull;
+
 pub mod shapes;
 
 pub mod world;

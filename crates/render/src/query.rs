@@ -3,6 +3,7 @@
 use crate::shapes::Shapes;
 use dotray_accel::Batch;
 use dotray_accel::Query;
+use dotray_accel::packet::Packet;
 use dotray_accel::simd::Simd;
 use dotray_geometry::Hit;
 use dotray_geometry::Ray;
@@ -59,20 +60,18 @@ impl<'a> NearestBatch<'a> {
         }
     }
 
+    /// Tests one shape; answers with the new upper bound of t.
     #[inline(always)]
-    fn test(&mut self, i: usize, positions: impl Iterator<Item = u32>, mut t_max: f64) -> f64 {
-        let ray = &self.rays[i];
+    fn test(&mut self, i: usize, position: u32, t_max: f64) -> f64 {
+        self.tests[i].shapes += 1;
         let triangle_ray = &self.triangle_rays[if self.triangle_rays.len() == 1 { 0 } else { i }];
-        for position in positions {
-            self.tests[i].shapes += 1;
-            let crossings = self.shapes.crossings(position, ray, triangle_ray);
-            let Some(hit) = crossings.first_within(self.t_min, t_max) else { continue };
-            let number = self.shapes.number(position);
-            // An exact tie goes to the shape that stands first in the file.
-            if self.found[i].is_none_or(|best| hit.t < best.hit.t || number < best.number) {
-                self.found[i] = Some(Nearest { position, number, hit });
-                t_max = hit.t;
-            }
+        let crossings = self.shapes.crossings(position, &self.rays[i], triangle_ray);
+        let Some(hit) = crossings.first_within(self.t_min, t_max) else { return t_max };
+        let number = self.shapes.number(position);
+        // An exact tie goes to the shape that stands first in the file.
+        if self.found[i].is_none_or(|best| hit.t < best.hit.t || number < best.number) {
+            self.found[i] = Some(Nearest { position, number, hit });
+            return hit.t;
         }
         t_max
     }
@@ -89,12 +88,29 @@ impl Batch for NearestBatch<'_> {
 
     #[inline(always)]
     fn leaf_range<S: Simd>(&mut self, _simd: S, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
-        self.test(i, first..first + count, t_max)
+        (first..first + count).fold(t_max, |t_max, position| self.test(i, position, t_max))
     }
 
     #[inline(always)]
     fn leaf_list<S: Simd>(&mut self, _simd: S, i: usize, positions: &[u32], t_max: f64) -> f64 {
-        self.test(i, positions.iter().copied(), t_max)
+        positions.iter().fold(t_max, |t_max, &position| self.test(i, position, t_max))
+    }
+
+    #[inline(always)]
+    fn leaf_packet<S: Simd>(&mut self, simd: S, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
+        let shapes = self.shapes;
+        let mut changed = false;
+        for position in first..first + count {
+            shapes.sweep(simd, position, packet, active, |packet, group, lane| {
+                let (ray, t_max) = (packet.group(group).rays[lane], packet.group(group).t_max[lane]);
+                let answer = self.test(ray as usize, position, t_max);
+                if answer < t_max {
+                    packet.set_t_max(group, lane, answer);
+                    changed = true;
+                }
+            });
+        }
+        changed
     }
 
     fn finished(&mut self, i: usize, box_tests: u64) {
@@ -171,27 +187,26 @@ impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
         }
     }
 
+    /// Tests one shape; answers whether it blocks the ray.
     #[inline(always)]
-    fn test(&mut self, i: usize, positions: impl Iterator<Item = u32>, t_max: f64) -> f64 {
+    fn blocks(&mut self, i: usize, position: u32) -> bool {
+        self.tests[i].shapes += 1;
         let shadow = &self.rays[i];
         let triangle_ray = &self.triangle_rays[if self.triangle_rays.len() == 1 { 0 } else { i }];
-        for position in positions {
-            self.tests[i].shapes += 1;
-            let crossings = self.shapes.crossings(position, &shadow.ray, triangle_ray);
-            for &hit in crossings.as_slice() {
-                if !(self.t_min < hit.t && hit.t < shadow.t_end) {
-                    continue;
-                }
-                if !(self.see_through)(self.shapes.material(position)) {
-                    self.found[i] = Between::Blocked(position);
-                    return f64::NEG_INFINITY;
-                }
-                if let Between::Crossed(list) = &mut self.found[i] {
-                    list.push(Crossing { hit, number: self.shapes.number(position), position });
-                }
+        let crossings = self.shapes.crossings(position, &shadow.ray, triangle_ray);
+        for &hit in crossings.as_slice() {
+            if !(self.t_min < hit.t && hit.t < shadow.t_end) {
+                continue;
+            }
+            if !(self.see_through)(self.shapes.material(position)) {
+                self.found[i] = Between::Blocked(position);
+                return true;
+            }
+            if let Between::Crossed(list) = &mut self.found[i] {
+                list.push(Crossing { hit, number: self.shapes.number(position), position });
             }
         }
-        t_max
+        false
     }
 }
 
@@ -206,12 +221,29 @@ impl<F: Fn(u32) -> bool> Batch for ShadowBatch<'_, F> {
 
     #[inline(always)]
     fn leaf_range<S: Simd>(&mut self, _simd: S, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
-        self.test(i, first..first + count, t_max)
+        let blocked = (first..first + count).any(|position| self.blocks(i, position));
+        if blocked { f64::NEG_INFINITY } else { t_max }
     }
 
     #[inline(always)]
     fn leaf_list<S: Simd>(&mut self, _simd: S, i: usize, positions: &[u32], t_max: f64) -> f64 {
-        self.test(i, positions.iter().copied(), t_max)
+        let blocked = positions.iter().any(|&position| self.blocks(i, position));
+        if blocked { f64::NEG_INFINITY } else { t_max }
+    }
+
+    #[inline(always)]
+    fn leaf_packet<S: Simd>(&mut self, simd: S, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
+        let shapes = self.shapes;
+        let mut changed = false;
+        for position in first..first + count {
+            shapes.sweep(simd, position, packet, active, |packet, group, lane| {
+                if self.blocks(packet.group(group).rays[lane] as usize, position) {
+                    packet.set_t_max(group, lane, f64::NEG_INFINITY);
+                    changed = true;
+                }
+            });
+        }
+        changed
     }
 
     fn finished(&mut self, i: usize, box_tests: u64) {

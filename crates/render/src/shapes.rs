@@ -3,6 +3,12 @@
 //! A *position* is a place in the accelerator's order, so that a leaf is one block of memory; a *number* is the
 //! shape's place in the scene's file order, which decides ties.
 
+use crate::cull;
+use crate::cull::Cull;
+use crate::cull::Spine;
+use dotray_accel::packet::Packet;
+use dotray_accel::simd::Simd;
+use dotray_geometry::Aabb;
 use dotray_geometry::Cone;
 use dotray_geometry::Crossings;
 use dotray_geometry::Cuboid;
@@ -95,6 +101,20 @@ pub struct WorldSurface {
     pub in_object: Surface,
 }
 
+/// A shape that is tested in object coordinates, with what rules it out before.
+#[derive(Clone, Copy, Debug)]
+struct Framed<T> {
+    shape: T,
+    bounds: Aabb,
+    spine: Option<Spine>,
+}
+
+impl<T> Framed<T> {
+    fn new(shape: T, bounds: Aabb, spine: Option<Spine>) -> Self {
+        Self { shape, bounds, spine }
+    }
+}
+
 /// All shapes of a scene.
 #[derive(Debug, Default)]
 pub struct Shapes {
@@ -111,10 +131,10 @@ pub struct Shapes {
     cylinders: Vec<OrientedCylinder>,
     cones: Vec<OrientedCone>,
     triangles: Vec<[Vec3; 3]>,
-    framed_spheres: Vec<Sphere>,
-    framed_cuboids: Vec<Cuboid>,
-    framed_cylinders: Vec<Cylinder>,
-    framed_cones: Vec<Cone>,
+    framed_spheres: Vec<Framed<Sphere>>,
+    framed_cuboids: Vec<Framed<Cuboid>>,
+    framed_cylinders: Vec<Framed<Cylinder>>,
+    framed_cones: Vec<Framed<Cone>>,
 }
 
 /// Shape `number` of the scene, in object coordinates, with its run.
@@ -168,6 +188,7 @@ impl Shapes {
         let transform = self.frames[frame];
         let world_from_object = &transform.world_from_object;
         let similarity = if frame == 0 { Some(1.0) } else { transform.similarity_scale() };
+        let bounds = || shape.world_bounds(world_from_object);
         fn put<T>(list: &mut Vec<T>, form: Form, value: T) -> Slot {
             list.push(value);
             Slot::new(form, list.len() - 1)
@@ -179,12 +200,12 @@ impl Shapes {
                 });
                 match in_world {
                     Some(sphere) => put(&mut self.spheres, Form::Sphere, sphere),
-                    None => put(&mut self.framed_spheres, Form::FramedSphere, *sphere),
+                    None => put(&mut self.framed_spheres, Form::FramedSphere, Framed::new(*sphere, bounds(), None)),
                 }
             }
             Shape::Cuboid(cuboid) => match axis_aligned(cuboid, &transform) {
                 Some(cuboid) => put(&mut self.cuboids, Form::Cuboid, cuboid),
-                None => put(&mut self.framed_cuboids, Form::FramedCuboid, *cuboid),
+                None => put(&mut self.framed_cuboids, Form::FramedCuboid, Framed::new(*cuboid, bounds(), None)),
             },
             Shape::Cylinder(cylinder) => match similarity {
                 Some(scale) => put(
@@ -192,13 +213,19 @@ impl Shapes {
                     Form::Cylinder,
                     OrientedCylinder::from_object(cylinder, world_from_object, scale),
                 ),
-                None => put(&mut self.framed_cylinders, Form::FramedCylinder, *cylinder),
+                None => {
+                    let spine = Spine::new(world_from_object, &bounds(), cylinder.center(), cylinder.radius());
+                    put(&mut self.framed_cylinders, Form::FramedCylinder, Framed::new(*cylinder, bounds(), spine))
+                }
             },
             Shape::Cone(cone) => match similarity {
                 Some(scale) => {
                     put(&mut self.cones, Form::Cone, OrientedCone::from_object(cone, world_from_object, scale))
                 }
-                None => put(&mut self.framed_cones, Form::FramedCone, *cone),
+                None => {
+                    let spine = Spine::new(world_from_object, &bounds(), cone.center(), cone.radius());
+                    put(&mut self.framed_cones, Form::FramedCone, Framed::new(*cone, bounds(), spine))
+                }
             },
             Shape::Triangle(triangle) => {
                 let vertices = triangle.vertices().map(|v| world_from_object.transform_point3(v));
@@ -271,14 +298,69 @@ impl Shapes {
         }
     }
 
+    /// Calls `visit` with every lane of the groups `active` that may hit the shape at `position`.
+    #[inline(always)]
+    pub(crate) fn sweep<S: Simd>(
+        &self,
+        simd: S,
+        position: u32,
+        packet: &mut Packet,
+        active: u32,
+        visit: impl FnMut(&mut Packet, usize, usize),
+    ) {
+        let slot = self.slots[position as usize];
+        let index = slot.index();
+        let frame = *packet.frame();
+        match slot.form() {
+            Form::Sphere => {
+                sweep_with(simd, &cull::Ball::around(&frame, &self.spheres[index]), packet, active, visit);
+            }
+            Form::Triangle => {
+                sweep_with(simd, &cull::Corner::new(&frame, &self.triangles[index]), packet, active, visit);
+            }
+            Form::Cuboid => {
+                let block = cull::Block::new(&frame, &self.cuboids[index].bounds());
+                sweep_with(simd, &block, packet, active, visit);
+            }
+            Form::Cylinder => {
+                let c = &self.cylinders[index];
+                let bar = cull::Bar::new(&frame, c.base(), c.axis(), c.radius(), c.height());
+                sweep_with(simd, &bar, packet, active, visit);
+            }
+            Form::Cone => {
+                let c = &self.cones[index];
+                let bar = cull::Bar::new(&frame, c.base(), c.axis(), c.radius(), c.height());
+                sweep_with(simd, &bar, packet, active, visit);
+            }
+            Form::FramedSphere => {
+                let boxed = cull::Boxed::new(&frame, &self.framed_spheres[index].bounds, None);
+                sweep_with(simd, &boxed, packet, active, visit);
+            }
+            Form::FramedCuboid => {
+                let boxed = cull::Boxed::new(&frame, &self.framed_cuboids[index].bounds, None);
+                sweep_with(simd, &boxed, packet, active, visit);
+            }
+            Form::FramedCylinder => {
+                let framed = &self.framed_cylinders[index];
+                let boxed = cull::Boxed::new(&frame, &framed.bounds, framed.spine.as_ref());
+                sweep_with(simd, &boxed, packet, active, visit);
+            }
+            Form::FramedCone => {
+                let framed = &self.framed_cones[index];
+                let boxed = cull::Boxed::new(&frame, &framed.bounds, framed.spine.as_ref());
+                sweep_with(simd, &boxed, packet, active, visit);
+            }
+        }
+    }
+
     #[inline(never)]
     fn framed_crossings(&self, form: Form, index: usize, position: u32, ray: &Ray) -> Crossings {
         let ray_in_object = ray.transformed(&self.frame(position).object_from_world);
         match form {
-            Form::FramedSphere => self.framed_spheres[index].crossings(&ray_in_object),
-            Form::FramedCuboid => self.framed_cuboids[index].crossings(&ray_in_object),
-            Form::FramedCylinder => self.framed_cylinders[index].crossings(&ray_in_object),
-            Form::FramedCone => self.framed_cones[index].crossings(&ray_in_object),
+            Form::FramedSphere => self.framed_spheres[index].shape.crossings(&ray_in_object),
+            Form::FramedCuboid => self.framed_cuboids[index].shape.crossings(&ray_in_object),
+            Form::FramedCylinder => self.framed_cylinders[index].shape.crossings(&ray_in_object),
+            Form::FramedCone => self.framed_cones[index].shape.crossings(&ray_in_object),
             Form::Sphere | Form::Cuboid | Form::Cylinder | Form::Cone | Form::Triangle => Crossings::NONE,
         }
     }
@@ -349,6 +431,28 @@ impl Shapes {
             })
             .sum();
         (baked, written)
+    }
+}
+
+/// Calls `visit` with every lane of the groups `active` that the cull lets through.
+#[inline(always)]
+fn sweep_with<S: Simd>(
+    simd: S,
+    cull: &impl Cull,
+    packet: &mut Packet,
+    active: u32,
+    mut visit: impl FnMut(&mut Packet, usize, usize),
+) {
+    let mut groups = active;
+    while groups != 0 {
+        let group = groups.trailing_zeros() as usize;
+        groups &= groups - 1;
+        let mut lanes = cull.may_hit(simd, packet.group(group));
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            visit(packet, group, lane);
+        }
     }
 }
 

@@ -27,7 +27,7 @@ impl Texture {
 
     /// The bytes it holds.
     pub fn memory(&self) -> u64 {
-        std::mem::size_of_val(self.image.samples()) as u64
+        size_of_val(self.image.samples()) as u64
     }
 
     fn texel(&self, x: usize, y: usize) -> Vec3 {

@@ -71,7 +71,7 @@ impl<'a> Tracer<'a> {
     fn stream_colors(&mut self, rays: &[Ray], contributions: &[Vec3], depth: u32) -> Vec<Vec3> {
         let world = self.world;
         let mut colors = vec![world.background; rays.len()];
-        let met = self.meet(rays);
+        let met = self.meet(rays, true);
         for Met { index, point } in &met {
             colors[*index] = point.own_light(world.ambient);
         }
@@ -88,10 +88,14 @@ impl<'a> Tracer<'a> {
     }
 
     /// What each ray meets first, with its surface.
-    fn meet(&mut self, rays: &[Ray]) -> Vec<Met<'a>> {
+    fn meet(&mut self, rays: &[Ray], together: bool) -> Vec<Met<'a>> {
         let world = self.world;
         let mut batch = NearestBatch::new(&world.shapes, rays, world.ray_eps);
-        world.accelerator.walk(self.level, &mut batch);
+        if together {
+            world.accelerator.walk_together(self.level, &mut batch);
+        } else {
+            world.accelerator.walk(self.level, &mut batch);
+        }
         count(&mut self.stats, &batch.tests);
         let filter = self.options.texture_filter;
         let found = batch.found.iter().enumerate();
@@ -158,7 +162,7 @@ impl<'a> Tracer<'a> {
         let transmission = |material: u32| world.materials[material as usize].transmission;
         let see_through = |material| !all_opaque && transmission(material) != Vec3::ZERO;
         let mut batch = ShadowBatch::new(&world.shapes, rays, world.ray_eps, see_through);
-        world.accelerator.walk(self.level, &mut batch);
+        world.accelerator.walk_together(self.level, &mut batch);
         batch.finish();
         count(&mut self.stats, &batch.tests);
         let filter = |between: &Between| match between {

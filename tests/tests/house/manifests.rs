@@ -125,12 +125,8 @@ fn planted_faults_are_found() {
     assert_eq!(of("dotray-viewer", "[dependencies]\ndotray = \"1\"").len(), 1);
     assert_eq!(of("dotray-tests", "[dependencies]\ndotray-viewer = \"1\"").len(), 1);
     assert_eq!(of("dotray-new", "").len(), 1);
-    for line in ["version.workspace = true", "workspace = true\n[", "license.workspace = true"] {
-        let text = (head("dotray-image") + "[dependencies]").replacen(
-            line,
-            if line.ends_with('[') { "[" } else { "" },
-            1,
-        );
+    for line in ["\nversion.workspace = true", "\nlicense.workspace = true", "\n[lints]\nworkspace = true"] {
+        let text = head("dotray-image").replacen(line, "", 1);
         assert_eq!(faults(&text).len(), 1, "{text}");
     }
 }

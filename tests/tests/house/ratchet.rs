@@ -122,7 +122,8 @@ fn lines_without_tests(text: &str) -> usize {
 
 #[test]
 fn planted_faults_are_found() {
-    let code = "fn a() {\n\n}\nimpl X {\n    fn b(f: fn(u32) -> [u8; 3])\n    where Y: Z,\n    {\n        { }\n    }\n    fn c();\n}";
+    let code = "fn a() {\n\n}\nimpl X {\n    fn b(f: fn(u32) -> [u8; 3])\n    where Y: Z,\n    {\n        { }\n\
+        }\n    fn c();\n}";
     assert_eq!(functions(code), [("a".to_owned(), 3), ("b".to_owned(), 5)]);
     assert_eq!(lines_without_tests("a\nb\n#[cfg(test)]\nmod t {\n}\n"), 2);
     let over = |lines| vec![("p".to_owned(), "f".to_owned(), lines)];

@@ -143,13 +143,16 @@ pub fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// [`code`] with everything under `#[cfg(test)]` blanked too.
+/// [`code`] with everything under `#[cfg(test)]`, or `#[cfg(all(test, …))]`, blanked too.
 pub fn code_without_tests(text: &str) -> String {
-    const MARK: &str = "#[cfg(test)]";
     let mut code = code(text);
     let mut from = 0;
-    while let Some(start) = code[from..].find(MARK).map(|found| from + found) {
-        let item = start + MARK.len();
+    while let Some(start) = code[from..].find("#[cfg(").map(|found| from + found) {
+        let item = start + code[start..].find(']').map_or(0, |end| end + 1);
+        from = item;
+        if !["#[cfg(test)]", "#[cfg(all(test,"].iter().any(|mark| code[start..].starts_with(mark)) {
+            continue;
+        }
         let end = item + item_length(&code[item..]);
         let blank: String = code[start..end].chars().map(|c| if c == '\n' { '\n' } else { ' ' }).collect();
         code.replace_range(start..end, &blank);
@@ -167,7 +170,7 @@ fn item_length(code: &str) -> usize {
             '}' => depth -= 1,
             _ => {}
         }
-        if (c == '}' && depth == 0) || (c == ';' && depth == 0) {
+        if depth == 0 && matches!(c, '}' | ';') {
             return at + 1;
         }
     }
@@ -198,7 +201,8 @@ pub fn line_of(text: &str, at: usize) -> usize {
 
 #[test]
 fn comments_and_literals_are_blanked() {
-    let text = "let a = \"unsafe \\\" //\"; // unsafe\n/* unsafe /* */ unsafe */ let b = 'x'; let c = '\\''; r#\"a\"b\"# 'life";
+    let text = "let a = \"unsafe \\\" //\"; // unsafe\n/* unsafe /* */ unsafe */ let b = 'x'; \
+        let c = '\\''; r#\"a\"b\"# 'life";
     let blanked = code(text);
     assert_eq!(blanked.chars().count(), text.chars().count());
     assert!(!blanked.contains("unsafe"), "{blanked}");
@@ -207,9 +211,10 @@ fn comments_and_literals_are_blanked() {
 
 #[test]
 fn unit_tests_are_blanked() {
-    let text =
-        "fn a() {}\n#[cfg(test)]\nmod tests {\n fn b() { \"}\" }\n}\n#[cfg(test)]\nmod x;\nfn c() {}\n";
-    let blanked = code_without_tests(text);
+    let of_tests = "#[cfg(test)]\nmod tests {\n fn b() { \"}\" }\n}\n#[cfg(all(test, unix))]\nmod x;\n";
+    let text = format!("fn a() {{}}\n{of_tests}#[cfg(unix)]\nfn c() {{}}\n");
+    let blanked = code_without_tests(&text);
     assert_eq!(blanked.lines().count(), text.lines().count());
-    assert_eq!(words(&blanked).iter().map(|w| w.1).collect::<Vec<_>>(), ["fn", "a", "fn", "c"]);
+    let left: Vec<&str> = words(&blanked).into_iter().map(|(_, word)| word).collect();
+    assert_eq!(left, ["fn", "a", "cfg", "unix", "fn", "c"]);
 }

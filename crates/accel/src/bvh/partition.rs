@@ -157,19 +157,18 @@ pub fn part(references: &mut [Reference], below: impl Fn(&Reference) -> bool + S
 
 /// Parts one piece.
 fn part_piece(references: &mut [Reference], below: &impl Fn(&Reference) -> bool) -> (usize, Span, Span) {
-    let (mut start, mut end) = (0, references.len());
-    let (mut low, mut high) = (Span::EMPTY, Span::EMPTY);
-    while start < end {
-        if below(&references[start]) {
-            low.add(&references[start]);
-            start += 1;
-        } else {
-            high.add(&references[start]);
-            end -= 1;
-            references.swap(start, end);
-        }
+    // Every reference changes places with the first that is not below, itself included: no branch to guess wrong.
+    let mut middle = 0;
+    let mut spans = [Span::EMPTY; 2];
+    for i in 0..references.len() {
+        let reference = references[i];
+        let is_below = below(&reference);
+        spans[usize::from(!is_below)].add(&reference);
+        references[i] = references[middle];
+        references[middle] = reference;
+        middle += usize::from(is_below);
     }
-    (start, low, high)
+    (middle, spans[0], spans[1])
 }
 
 /// Brings the pieces' parts together: what lies on the wrong side of `middle` changes places, run by run.

@@ -1,12 +1,12 @@
 //! The walk: one for nearest and for any hit, front to back, eight boxes at a time.
 
+use crate::batch::Batch;
 use crate::bvh::wide::Child;
 use crate::bvh::wide::Tree;
 use crate::bvh::wide::WIDTH;
 use crate::bvh::wide::WideNode;
 use crate::clip::ClippedRay;
 use crate::narrow::NarrowRay;
-use crate::query::Batch;
 use crate::simd::Simd;
 use crate::simd::f32x8;
 use crate::simd::prelude::*;
@@ -24,7 +24,8 @@ struct SpreadRay<S: Simd> {
 impl<S: Simd> SpreadRay<S> {
     #[inline(always)]
     fn new(simd: S, ray: &NarrowRay) -> Self {
-        let spread = |numbers: [f32; 3]| numbers.map(|number| f32x8::splat(simd, number));
+        let spread =
+            |[x, y, z]: [f32; 3]| [f32x8::splat(simd, x), f32x8::splat(simd, y), f32x8::splat(simd, z)];
         Self {
             inverse: spread(ray.inverse),
             inverse_far: spread(ray.inverse_far),
@@ -34,19 +35,27 @@ impl<S: Simd> SpreadRay<S> {
         }
     }
 
+    /// Where the ray enters the slabs of eight boxes across an axis.
+    #[inline(always)]
+    fn near(&self, simd: S, node: &WideNode, axis: usize) -> f32x8<S> {
+        let planes = &node.planes[axis][(self.far_side[axis] ^ 1) & 1];
+        f32x8::load_array_ref(simd, planes).mul_sub(self.inverse[axis], self.near_offset[axis])
+    }
+
+    /// Where it leaves them.
+    #[inline(always)]
+    fn far(&self, simd: S, node: &WideNode, axis: usize) -> f32x8<S> {
+        let planes = &node.planes[axis][self.far_side[axis] & 1];
+        f32x8::load_array_ref(simd, planes).mul_sub(self.inverse_far[axis], self.far_offset[axis])
+    }
+
     /// Which of a node's boxes the ray meets at some t' in [0, bound] (bit by bit), and where it enters each.
     #[inline(always)]
     fn meets(&self, simd: S, node: &WideNode, bound: f32) -> (u32, [f32; WIDTH]) {
-        let near = |axis: usize| {
-            let planes = &node.planes[axis][(self.far_side[axis] ^ 1) & 1];
-            f32x8::load_array_ref(simd, planes).mul_sub(self.inverse[axis], self.near_offset[axis])
-        };
-        let far = |axis: usize| {
-            let planes = &node.planes[axis][self.far_side[axis] & 1];
-            f32x8::load_array_ref(simd, planes).mul_sub(self.inverse_far[axis], self.far_offset[axis])
-        };
-        let enter = near(0).max(near(1)).max(near(2).max(f32x8::splat(simd, 0.0)));
-        let leave = far(0).min(far(1)).min(far(2).min(f32x8::splat(simd, bound)));
+        let near = [self.near(simd, node, 0), self.near(simd, node, 1), self.near(simd, node, 2)];
+        let far = [self.far(simd, node, 0), self.far(simd, node, 1), self.far(simd, node, 2)];
+        let enter = near[0].max(near[1]).max(near[2].max(f32x8::splat(simd, 0.0)));
+        let leave = far[0].min(far[1]).min(far[2].min(f32x8::splat(simd, bound)));
         let mask = enter.simd_le(leave).to_bitmask();
         (mask as u32, enter.to_array())
     }
@@ -60,6 +69,9 @@ fn waiting(enter: f32, child: Child) -> u64 {
 }
 
 /// Walks every ray of the batch through the tree; `stack` has room for `tree.stack` children and eight more.
+///
+/// Tried and dropped: four rays in turn, a step each, so that one computes while another waits for memory. Random rays
+/// over a million items gained 25 to 35 %, but coherent ones lost 10 to 30 %.
 #[inline(always)]
 pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &mut B) {
     for i in 0..batch.len() {
@@ -96,26 +108,10 @@ fn walk_ray<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &
             // A node: the boxes that the ray meets go onto the stack, the nearest on top.
             let node = &tree.nodes[child.0 as usize];
             nodes += 1;
-            let (mut mask, enter) = ray.meets(simd, node, bound);
+            let (mask, enter) = ray.meets(simd, node, bound);
             if mask != 0 {
-                let lane = mask.trailing_zeros() as usize & 7;
-                mask &= mask - 1;
-                if mask == 0 {
-                    child = node.children[lane];
-                    continue 'walk;
-                }
-                let bottom = top;
-                stack[top] = waiting(enter[lane], node.children[lane]);
-                top += 1;
-                while mask != 0 {
-                    let lane = mask.trailing_zeros() as usize & 7;
-                    mask &= mask - 1;
-                    insert(stack, bottom, top, waiting(enter[lane], node.children[lane]));
-                    top += 1;
-                }
-                top -= 1;
-                child = Child(stack[top] as u32);
-                continue 'walk;
+                (child, top) = stack_children(stack, top, node, mask, &enter);
+                continue;
             }
         }
         // The next child that waits, unless a hit has been found in front of it.
@@ -132,6 +128,55 @@ fn walk_ray<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &
         }
     }
     8 * nodes + 1
+}
+
+/// Puts a node's children that the ray meets (one at least) on the stack, the nearest on top; takes that one off
+/// again and returns it with the new top.
+#[inline(always)]
+fn stack_children(
+    stack: &mut [u64],
+    mut top: usize,
+    node: &WideNode,
+    mut mask: u32,
+    enter: &[f32; WIDTH],
+) -> (Child, usize) {
+    let lane = mask.trailing_zeros() as usize % WIDTH;
+    if mask & (mask - 1) == 0 {
+        return (node.children[lane], top);
+    }
+    // Two and three are put in order without a branch, which would be guessed wrong every other time.
+    let (a, b) = (take_lowest(&mut mask, node, enter), take_lowest(&mut mask, node, enter));
+    let (a, b) = ordered(a, b);
+    if mask == 0 {
+        stack[top] = b;
+        return (Child(a as u32), top + 1);
+    }
+    let c = take_lowest(&mut mask, node, enter);
+    let (b, c) = ordered(b, c);
+    let (a, b) = ordered(a, b);
+    let bottom = top;
+    let room = &mut stack[top..top + 3];
+    (room[0], room[1], room[2]) = (c, b, a);
+    top += 3;
+    while mask != 0 {
+        insert(stack, bottom, top, take_lowest(&mut mask, node, enter));
+        top += 1;
+    }
+    (Child(stack[top - 1] as u32), top - 1)
+}
+
+/// The child of the lowest lane of the mask, which is taken out of it.
+#[inline(always)]
+fn take_lowest(mask: &mut u32, node: &WideNode, enter: &[f32; WIDTH]) -> u64 {
+    let lane = mask.trailing_zeros() as usize % WIDTH;
+    *mask &= *mask - 1;
+    waiting(enter[lane], node.children[lane])
+}
+
+/// The lesser and the greater, without a branch to guess wrong.
+#[inline(always)]
+fn ordered(a: u64, b: u64) -> (u64, u64) {
+    (a.min(b), a.max(b))
 }
 
 /// Inserts into `stack[bottom..top]`, which descends.

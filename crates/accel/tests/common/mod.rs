@@ -222,8 +222,8 @@ pub fn trace<I: Item>(
 /// The truth, without any accelerator.
 pub fn nearest<I: Item>(scene: &Scene<I>, queries: &[Query]) -> Vec<Hit> {
     let mut rays = Rays::new(scene, None, queries, false);
-    for i in 0..queries.len() {
-        let mut t_max = queries[i].t_max;
+    for (i, query) in queries.iter().enumerate() {
+        let mut t_max = query.t_max;
         for item in 0..scene.0.len() as u32 {
             t_max = rays.test(i, item, t_max);
         }

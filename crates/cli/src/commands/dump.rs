@@ -12,8 +12,8 @@ use crate::exit::Failure;
 use crate::exit::stdout_failure;
 use crate::input::Written;
 use crate::input::read;
+use crate::meaning::Place;
 use crate::messages::Messages;
-use crate::plan::Place;
 use crate::values::When;
 
 /// Prints the tree, then what is wrong with the scene: a tree helps to find a fault in it.

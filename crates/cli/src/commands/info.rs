@@ -10,8 +10,8 @@ use crate::args::InfoArgs;
 use crate::exit::Failure;
 use crate::exit::put;
 use crate::input::understand;
+use crate::meaning::Place;
 use crate::messages::Messages;
-use crate::plan::Place;
 use crate::values::TextOrJson;
 use crate::values::When;
 

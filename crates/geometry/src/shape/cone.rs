@@ -6,7 +6,6 @@ use super::round::Interval;
 use super::round::SIDE;
 use super::round::along_and_across;
 use super::round::bottom_texcoord;
-use super::round::direction_along_and_across;
 use super::round::disc_bounds;
 use super::round::side_turn;
 use super::round::within_disc;
@@ -168,7 +167,7 @@ impl OrientedCone {
     #[inline]
     pub fn crossings(&self, ray: &Ray) -> Crossings {
         let (above_base, across) = along_and_across(ray.origin - self.base, self.axis);
-        let (dy, direction_across) = direction_along_and_across(ray.direction, self.axis);
+        let (dy, direction_across) = along_and_across(ray.direction, self.axis);
         let line = LineFromApex { y: above_base - self.height, dy, across, direction_across };
         line.crossings(self.radius, self.height)
     }

@@ -99,8 +99,10 @@ impl Cuboid {
         point[axis] = if is_high { high[axis] } else { low[axis] };
         let normal = Vec3::AXES[axis] * if is_high { 1.0 } else { -1.0 };
         // Fractions of the edges from the low and from the high corner; the flat axis of a rectangle is not used.
-        let up = (point - low) / self.size;
-        let down = (high - point) / self.size;
+        // The divisor is the distance of the rounded corners, so that no fraction exceeds 1.
+        let size = (high - low).max(Vec3::splat(f64::MIN_POSITIVE));
+        let up = (point - low) / size;
+        let down = (high - point) / size;
         let texcoord = match face {
             0 => Vec2::new(up.z, down.y),
             1 => Vec2::new(down.z, down.y),

@@ -6,7 +6,6 @@ use super::round::Interval;
 use super::round::TOP;
 use super::round::along_and_across;
 use super::round::bottom_texcoord;
-use super::round::direction_along_and_across;
 use super::round::disc_bounds;
 use super::round::side_turn;
 use super::round::top_texcoord;
@@ -164,7 +163,7 @@ impl OrientedCylinder {
     #[inline]
     pub fn crossings(&self, ray: &Ray) -> Crossings {
         let (y, across) = along_and_across(ray.origin - self.base, self.axis);
-        let (dy, direction_across) = direction_along_and_across(ray.direction, self.axis);
+        let (dy, direction_across) = along_and_across(ray.direction, self.axis);
         Interval::between_planes(y, dy, (0.0, BOTTOM), (self.height, TOP))
             .map_or(Crossings::NONE, |planes| cut_by_side(planes, across, direction_across, self.radius))
     }

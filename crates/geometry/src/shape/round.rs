@@ -90,16 +90,11 @@ pub(super) fn disc_bounds(world_from_object: &Affine, center: Vec3, radius: f64)
 }
 
 /// A vector taken apart along a unit `axis`: its length along it, and what is perpendicular to it.
+///
+/// Rounding leaves a little of the axis in the second part, which does no harm: its square adds to the square of
+/// the distance from the axis.
 #[inline]
 pub(super) fn along_and_across(v: Vec3, axis: Vec3) -> (f64, Vec3) {
     let along = v.dot(axis);
     (along, v - axis * along)
-}
-
-/// As [`along_and_across`] for directions: where a direction is almost the axis, what is left across is mostly
-/// rounding, and a second step makes even that perpendicular, on which the quadratics rely.
-#[inline]
-pub(super) fn direction_along_and_across(direction: Vec3, axis: Vec3) -> (f64, Vec3) {
-    let (along, across) = along_and_across(direction, axis);
-    (along, across - axis * across.dot(axis))
 }

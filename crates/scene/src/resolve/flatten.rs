@@ -34,7 +34,7 @@ pub fn flatten(files: &[SceneFile], bases: &[u32], limits: &Limits, sink: &mut S
     let mut flattener = Flattener { files, bases, limits, flat, groups: vec![root], opened: Vec::new() };
     for step in Walk::new(files, limits.steps) {
         let fault = match step {
-            Ok(step) => flattener.take(step, sink),
+            Ok(step) => flattener.take(step, sink).map_err(too_many),
             Err(error) => Err(walk_fault(files, error)),
         };
         if let Err(fault) = fault {
@@ -68,7 +68,8 @@ struct Flattener<'a> {
 }
 
 impl Flattener<'_> {
-    fn take(&mut self, step: Step, sink: &mut Sink) -> Result<(), Diagnostic> {
+    /// The error says what there is too much of.
+    fn take(&mut self, step: Step, sink: &mut Sink) -> Result<(), String> {
         match step {
             Step::OpenGroup { file, group } => {
                 self.open_group(file, group, sink);
@@ -111,17 +112,17 @@ impl Flattener<'_> {
         self.opened.push((placed.map(|placed| placed.span).unwrap_or_default(), "inside this group"));
     }
 
-    fn add_run(&mut self, file: FileId, kind: ShapeKind, first: u32, count: u32) -> Result<(), Diagnostic> {
+    fn add_run(&mut self, file: FileId, kind: ShapeKind, first: u32, count: u32) -> Result<(), String> {
         let Some(group) = self.groups.last_mut() else { return Ok(()) };
         let Some(transform) = group.transform else { return Ok(()) };
         if self.flat.runs.len() as u64 >= self.limits.runs {
-            return Err(too_many(format!("more than {} runs of shapes", self.limits.runs)));
+            return Err(format!("more than {} runs of shapes", self.limits.runs));
         }
         let shape_count = u64::from(self.flat.shape_count) + u64::from(count);
         let most = self.limits.shapes.min(u64::from(u32::MAX));
         let Some(shape_count) = u32::try_from(shape_count).ok().filter(|count| u64::from(*count) <= most)
         else {
-            return Err(too_many(format!("more than {most} shapes")));
+            return Err(format!("more than {most} shapes"));
         };
         let frames = &mut self.flat.frames;
         let frame = *group.frame.get_or_insert_with(|| {

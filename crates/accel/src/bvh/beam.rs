@@ -1,0 +1,121 @@
+//! The walk of rays that travel together: a node is read once for a whole packet.
+//!
+//! A node's eight boxes are first tested against the packet's beam, then the boxes that the beam meets against each
+//! group of eight rays that is still active (after Wald, Benthin, Boulos, "Getting rid of packets", 2008, and
+//! Overbeck et al., "Large ray packets for real-time Whitted ray tracing", 2008; we keep a mask of groups where they
+//! keep ranges, and eight-wide nodes).
+
+use crate::bvh::wide::Child;
+use crate::bvh::wide::Tree;
+use crate::clip::ClippedRay;
+use crate::packet::Beam;
+use crate::packet::Packet;
+use crate::batch::Batch;
+use crate::simd::Simd;
+
+/// A child that waits for some groups.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    enter: f32,
+    child: Child,
+    active: u32,
+}
+
+/// Walks every ray of the batch through the tree, in packets of rays with equal signs.
+#[inline(always)]
+pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, batch: &mut B) {
+    let mut stack = Vec::new();
+    let mut packet = Packet::new(&tree.frame);
+    let mut octants: [Vec<u32>; 8] = Default::default();
+    for i in 0..batch.len() {
+        let direction = batch.query(i).ray.direction;
+        let octant = (0..3).map(|axis| usize::from(direction[axis].is_sign_negative()) << axis).sum::<usize>();
+        octants[octant & 7].push(i as u32);
+    }
+    for rays in &octants {
+        for &ray in rays {
+            let query = batch.query(ray as usize);
+            match ClippedRay::new(&query, tree.frame.scene()) {
+                Some(clipped) => packet.push(&tree.frame, ray, &query, &clipped),
+                None => batch.finished(ray as usize, 1),
+            }
+            if packet.is_full() {
+                walk_packet(simd, tree, &mut stack, &mut packet, batch);
+            }
+        }
+        walk_packet(simd, tree, &mut stack, &mut packet, batch);
+    }
+}
+
+/// Walks one packet, tells the batch what it cost, and empties it.
+#[inline(always)]
+fn walk_packet<S: Simd, B: Batch>(
+    simd: S,
+    tree: &Tree,
+    stack: &mut Vec<Waiting>,
+    packet: &mut Packet,
+    batch: &mut B,
+) {
+    if packet.is_empty() {
+        return;
+    }
+    let tests = descend(simd, tree, stack, packet, batch);
+    let count = packet.count();
+    for (index, ray) in packet.groups().iter().flat_map(|group| group.rays).take(count).enumerate() {
+        // The tests are shared out evenly, so that they sum up to what was done.
+        let share = tests / count as u64 + u64::from((index as u64) < tests % count as u64);
+        batch.finished(ray as usize, share);
+    }
+    packet.clear();
+}
+
+/// The walk proper; returns the number of box tests.
+#[inline(always)]
+fn descend<S: Simd, B: Batch>(
+    simd: S,
+    tree: &Tree,
+    stack: &mut Vec<Waiting>,
+    packet: &mut Packet,
+    batch: &mut B,
+) -> u64 {
+    let beam = Beam::around(packet, &tree.frame);
+    let (mut alive, mut bound) = packet.alive(simd);
+    let mut tests = packet.count() as u64;
+    stack.clear();
+    stack.push(Waiting { enter: 0.0, child: tree.root, active: alive });
+    while let Some(Waiting { enter, child, active }) = stack.pop() {
+        let active = active & alive;
+        if active == 0 || enter > bound {
+            continue;
+        }
+        if child.is_leaf() {
+            let (first, count) = child.items();
+            if batch.leaf_packet(simd, packet, active, first, count) {
+                (alive, bound) = packet.alive(simd);
+            }
+            continue;
+        }
+        // The boxes that any group meets go onto the stack, the nearest on top.
+        let node = &tree.nodes[child.0 as usize];
+        let (mut mask, enter) = beam.meets(simd, &node.planes, bound);
+        tests += 8;
+        let bottom = stack.len();
+        while mask != 0 {
+            let lane = mask.trailing_zeros() as usize & 7;
+            mask &= mask - 1;
+            let (mut near, mut far) = ([0.0; 3], [0.0; 3]);
+            for axis in 0..3 {
+                near[axis] = node.planes[axis][(beam.far_side[axis] ^ 1) & 1][lane];
+                far[axis] = node.planes[axis][beam.far_side[axis] & 1][lane];
+            }
+            tests += 8 * u64::from(active.count_ones());
+            let active = packet.meets(simd, active, near, far);
+            if active != 0 {
+                let waiting = Waiting { enter: enter[lane], child: node.children[lane], active };
+                let place = stack[bottom..].partition_point(|other| other.enter > waiting.enter);
+                stack.insert(bottom + place, waiting);
+            }
+        }
+    }
+    tests
+}

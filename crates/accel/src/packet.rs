@@ -1,0 +1,262 @@
+//! Rays that travel together: groups of eight, one ray a lane, up to sixteen groups a packet.
+//!
+//! All rays of a packet have directions of the same signs, so that they meet the planes of any box in one order.
+//! A lane without a ray, or whose ray has ended, has a bound below 0, which no box test passes.
+
+use crate::clip::ClippedRay;
+use crate::narrow::Frame;
+use crate::narrow::bound_in_frame;
+use crate::query::Query;
+use crate::simd::Simd;
+use crate::simd::f32x8;
+use crate::simd::mask32x8;
+use crate::simd::prelude::*;
+
+/// Rays in a group.
+pub const LANES: usize = 8;
+
+/// Groups in a packet.
+pub const GROUPS: usize = 16;
+
+/// The bound of a lane that looks for nothing.
+const ENDED: f32 = -1.0;
+
+/// Eight rays, a lane each; single precision is in the frame of [`Frame`], t' counts from where each ray enters the
+/// scene.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct Group {
+    inverse: [[f32; LANES]; 3],
+    inverse_far: [[f32; LANES]; 3],
+    near_offset: [[f32; LANES]; 3],
+    far_offset: [[f32; LANES]; 3],
+    /// Where the rays enter the scene, rounded to nearest.
+    pub origin: [[f32; LANES]; 3],
+    /// Their directions, rounded to nearest.
+    pub direction: [[f32; LANES]; 3],
+    /// The t' up to which boxes count; below 0 where the lane has ended.
+    pub bound: [f32; LANES],
+    /// The t up to which hits count, in double precision.
+    pub t_max: [f64; LANES],
+    start: [f64; LANES],
+    slack: [f64; LANES],
+    /// The rays' numbers in the batch.
+    pub rays: [u32; LANES],
+}
+
+impl Group {
+    /// No ray in any lane.
+    pub const EMPTY: Self = Self {
+        inverse: [[1.0; LANES]; 3],
+        inverse_far: [[1.0; LANES]; 3],
+        near_offset: [[0.0; LANES]; 3],
+        far_offset: [[0.0; LANES]; 3],
+        origin: [[0.0; LANES]; 3],
+        direction: [[1.0; LANES]; 3],
+        bound: [ENDED; LANES],
+        t_max: [f64::NEG_INFINITY; LANES],
+        start: [0.0; LANES],
+        slack: [0.0; LANES],
+        rays: [0; LANES],
+    };
+
+    /// Which lanes still look for something, bit by bit.
+    #[inline(always)]
+    pub fn alive(&self) -> u32 {
+        (0..LANES).map(|lane| u32::from(self.bound[lane] >= 0.0) << lane).sum()
+    }
+
+    /// Which lanes meet the box with these near and far planes.
+    #[inline(always)]
+    pub fn meets<S: Simd>(&self, simd: S, near: [f32; 3], far: [f32; 3]) -> mask32x8<S> {
+        let load = |lanes: &[f32; LANES]| f32x8::load_array_ref(simd, lanes);
+        let enter = |axis: usize| {
+            f32x8::splat(simd, near[axis]).mul_sub(load(&self.inverse[axis]), load(&self.near_offset[axis]))
+        };
+        let leave = |axis: usize| {
+            f32x8::splat(simd, far[axis]).mul_sub(load(&self.inverse_far[axis]), load(&self.far_offset[axis]))
+        };
+        let enter = enter(0).max(enter(1)).max(enter(2).max(f32x8::splat(simd, 0.0)));
+        let leave = leave(0).min(leave(1)).min(leave(2).min(load(&self.bound)));
+        enter.simd_le(leave)
+    }
+}
+
+/// Up to [`GROUPS`] groups.
+#[derive(Clone, Debug)]
+pub struct Packet {
+    groups: [Group; GROUPS],
+    count: usize,
+    frame: Frame,
+}
+
+impl Packet {
+    /// A packet without rays.
+    pub fn new(frame: &Frame) -> Self {
+        Self { groups: [Group::EMPTY; GROUPS], count: 0, frame: *frame }
+    }
+
+    /// Empties it.
+    pub fn clear(&mut self) {
+        self.groups[..self.count.div_ceil(LANES)].fill(Group::EMPTY);
+        self.count = 0;
+    }
+
+    /// Whether there is no room for another ray.
+    pub fn is_full(&self) -> bool {
+        self.count == GROUPS * LANES
+    }
+
+    /// Whether there is no ray.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Where its single precision measures from.
+    #[inline(always)]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// How many rays there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Adds ray number `ray` of the batch, already cut to the scene.
+    #[inline(always)]
+    pub fn push(&mut self, frame: &Frame, ray: u32, query: &Query, clipped: &ClippedRay) {
+        let narrow = frame.narrow_ray(clipped);
+        let (group, lane) = (&mut self.groups[self.count / LANES], self.count % LANES);
+        let origin = frame.point_on(clipped);
+        for axis in 0..3 {
+            group.inverse[axis][lane] = narrow.inverse[axis];
+            group.inverse_far[axis][lane] = narrow.inverse_far[axis];
+            group.near_offset[axis][lane] = narrow.near_offset[axis];
+            group.far_offset[axis][lane] = narrow.far_offset[axis];
+            group.origin[axis][lane] = origin[axis];
+            group.direction[axis][lane] = clipped.direction[axis] as f32;
+        }
+        group.start[lane] = clipped.start;
+        group.slack[lane] = clipped.slack;
+        group.t_max[lane] = query.t_max;
+        group.bound[lane] = narrow.bound(query.t_max);
+        group.rays[lane] = ray;
+        self.count += 1;
+    }
+
+    /// The groups that hold rays.
+    #[inline(always)]
+    pub fn groups(&self) -> &[Group] {
+        &self.groups[..self.count.div_ceil(LANES)]
+    }
+
+    /// One group.
+    #[inline(always)]
+    pub fn group(&self, group: usize) -> &Group {
+        &self.groups[group % GROUPS]
+    }
+
+    /// Takes a ray's new upper bound of t: nearer, or `f64::NEG_INFINITY` where it has ended.
+    #[inline(always)]
+    pub fn set_t_max(&mut self, group: usize, lane: usize, t_max: f64) {
+        let (scale, widening) = (self.frame.scale(), self.frame.widening());
+        let group = &mut self.groups[group % GROUPS];
+        let lane = lane % LANES;
+        group.t_max[lane] = t_max;
+        group.bound[lane] = if t_max == f64::NEG_INFINITY {
+            ENDED
+        } else {
+            bound_in_frame(t_max, group.start[lane], group.slack[lane], scale, widening)
+        };
+    }
+
+    /// Which of the groups `active` meet the box with these near and far planes.
+    #[inline(always)]
+    pub fn meets<S: Simd>(&self, simd: S, active: u32, near: [f32; 3], far: [f32; 3]) -> u32 {
+        let mut met = 0;
+        let mut left = active;
+        while left != 0 {
+            let group = left.trailing_zeros() as usize;
+            left &= left - 1;
+            met |= u32::from(self.group(group).meets(simd, near, far).any_true()) << group;
+        }
+        met
+    }
+
+    /// Which groups still have a lane that looks for something, and the largest bound of any.
+    #[inline(always)]
+    pub fn alive<S: Simd>(&self, simd: S) -> (u32, f32) {
+        let mut alive = 0;
+        let mut largest = f32x8::splat(simd, ENDED);
+        for (g, group) in self.groups().iter().enumerate() {
+            let bound = f32x8::load_array_ref(simd, &group.bound);
+            alive |= u32::from(bound.simd_ge(f32x8::splat(simd, 0.0)).any_true()) << g;
+            largest = largest.max(bound);
+        }
+        (alive, largest.to_array().into_iter().fold(ENDED, f32::max))
+    }
+}
+
+/// All rays of a packet at once: where their origins and reciprocal directions lie. A box that this beam misses is
+/// missed by every ray.
+///
+/// With x = plane - o and v in [v0, v1] of one sign, x v lies between the smaller and the larger of x v0 and x v1;
+/// the pads of the single rays are in o, and v1 is the widened reciprocal, so the bound of [`crate::narrow`] holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Beam {
+    near_origin: [f32; 3],
+    far_origin: [f32; 3],
+    inverse: [[f32; 2]; 3],
+    /// Which side of a box the rays leave through: 0 the low one, 1 the high one.
+    pub far_side: [usize; 3],
+}
+
+impl Beam {
+    /// Around all rays that have been pushed.
+    pub fn around(packet: &Packet, frame: &Frame) -> Self {
+        let mut low = [f32::INFINITY; 3];
+        let mut high = [f32::NEG_INFINITY; 3];
+        let mut inverse = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+        for index in 0..packet.count {
+            let (group, lane) = (&packet.groups[index / LANES], index % LANES);
+            for axis in 0..3 {
+                let origin = group.origin[axis][lane];
+                let pad = frame.pad(origin, group.slack[lane]);
+                low[axis] = low[axis].min((origin - pad).next_down());
+                high[axis] = high[axis].max((origin + pad).next_up());
+                for v in [group.inverse[axis][lane], group.inverse_far[axis][lane]] {
+                    inverse[axis] = [inverse[axis][0].min(v), inverse[axis][1].max(v)];
+                }
+            }
+        }
+        let far_side = [0, 1, 2].map(|axis| usize::from(inverse[axis][0] > 0.0));
+        let side = |axis: usize, side: usize| if side == 1 { high[axis] } else { low[axis] };
+        Self {
+            near_origin: [0, 1, 2].map(|axis| side(axis, far_side[axis])),
+            far_origin: [0, 1, 2].map(|axis| side(axis, far_side[axis] ^ 1)),
+            inverse,
+            far_side,
+        }
+    }
+
+    /// Which of eight boxes (by their planes) any ray may meet before `bound`, and where the first may enter.
+    #[inline(always)]
+    pub fn meets<S: Simd>(&self, simd: S, planes: &[[[f32; 8]; 2]; 3], bound: f32) -> (u32, [f32; 8]) {
+        let splat = |x| f32x8::splat(simd, x);
+        let mut enter = splat(0.0);
+        let mut leave = splat(bound);
+        for axis in 0..3 {
+            let far_side = self.far_side[axis] & 1;
+            let near = f32x8::load_array_ref(simd, &planes[axis][far_side ^ 1]) - splat(self.near_origin[axis]);
+            let far = f32x8::load_array_ref(simd, &planes[axis][far_side]) - splat(self.far_origin[axis]);
+            let (v0, v1) = (splat(self.inverse[axis][0]), splat(self.inverse[axis][1]));
+            enter = enter.max((near * v0).min(near * v1));
+            leave = leave.min((far * v0).max(far * v1));
+        }
+        // Rounding of `plane - o` and of the products is relative: 3 u, less than the widened reciprocal gives to
+        // the exits but not to the entries of v0, so those are made smaller.
+        let enter = enter * splat(1.0 - 1.0 / (1 << 20) as f32);
+        (enter.simd_le(leave).to_bitmask() as u32, enter.to_array())
+    }
+}
