@@ -168,7 +168,10 @@ mod tests {
             KernelRow::Rays(RayRow { scene: "rnd3".to_owned(), rate: 2.0, ..RayRow::default() }),
             KernelRow::Build(BuildRow { scene: "rnd3".to_owned(), shapes: 7, ..BuildRow::default() }),
         ];
-        let results = Results { rays: Some(Part { rows, machine: Machine::default(), rounds: 3 }), ..Results::default() };
+        let results = Results {
+            rays: Some(Part { rows, machine: Machine::default(), rounds: 3 }),
+            ..Results::default()
+        };
         let path = std::env::temp_dir().join(format!("xtask-results-{}", std::process::id()));
         assert_eq!(results.store(&path), Ok(()));
         assert_eq!(Results::load(&path), results);

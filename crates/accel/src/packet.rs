@@ -85,7 +85,7 @@ impl Group {
 /// Up to [`GROUPS`] groups.
 #[derive(Clone, Debug)]
 pub struct Packet {
-    groups: [Group; GROUPS],
+    groups: Vec<Group>,
     count: usize,
     frame: Frame,
 }
@@ -93,12 +93,12 @@ pub struct Packet {
 impl Packet {
     /// A packet without rays.
     pub fn new(frame: &Frame) -> Self {
-        Self { groups: [Group::EMPTY; GROUPS], count: 0, frame: *frame }
+        Self { groups: Vec::with_capacity(GROUPS), count: 0, frame: *frame }
     }
 
     /// Empties it.
     pub fn clear(&mut self) {
-        self.groups[..self.count.div_ceil(LANES)].fill(Group::EMPTY);
+        self.groups.clear();
         self.count = 0;
     }
 
@@ -127,7 +127,12 @@ impl Packet {
     #[inline(always)]
     pub fn push(&mut self, frame: &Frame, ray: u32, query: &Query, clipped: &ClippedRay) {
         let narrow = frame.narrow_ray(clipped);
-        let (group, lane) = (&mut self.groups[self.count / LANES], self.count % LANES);
+        let lane = self.count % LANES;
+        if lane == 0 {
+            self.groups.push(Group::EMPTY);
+        }
+        self.count += 1;
+        let Some(group) = self.groups.last_mut() else { return };
         let origin = frame.point_on(clipped);
         for axis in 0..3 {
             group.inverse[axis][lane] = narrow.inverse[axis];
@@ -142,26 +147,45 @@ impl Packet {
         group.t_max[lane] = query.t_max;
         group.bound[lane] = narrow.bound(query.t_max);
         group.rays[lane] = ray;
-        self.count += 1;
+    }
+
+    /// Fills the last group's empty lanes with copies of its first ray that have ended, so that what goes over all
+    /// lanes need not count them.
+    fn seal(&mut self) {
+        let filled = self.count % LANES;
+        let Some(group) = self.groups.last_mut().filter(|_| filled != 0) else { return };
+        for axis in 0..3 {
+            for lanes in [
+                &mut group.inverse[axis],
+                &mut group.inverse_far[axis],
+                &mut group.near_offset[axis],
+                &mut group.far_offset[axis],
+                &mut group.origin[axis],
+                &mut group.direction[axis],
+            ] {
+                let first = lanes[0];
+                lanes[filled..].fill(first);
+            }
+        }
     }
 
     /// The groups that hold rays.
     #[inline(always)]
     pub fn groups(&self) -> &[Group] {
-        &self.groups[..self.count.div_ceil(LANES)]
+        &self.groups
     }
 
     /// One group.
     #[inline(always)]
     pub fn group(&self, group: usize) -> &Group {
-        &self.groups[group % GROUPS]
+        &self.groups[group]
     }
 
     /// Takes a ray's new upper bound of t: nearer, or `f64::NEG_INFINITY` where it has ended.
     #[inline(always)]
     pub fn set_t_max(&mut self, group: usize, lane: usize, t_max: f64) {
         let (scale, widening) = (self.frame.scale(), self.frame.widening());
-        let group = &mut self.groups[group % GROUPS];
+        let group = &mut self.groups[group];
         let lane = lane % LANES;
         group.t_max[lane] = t_max;
         group.bound[lane] = if t_max == f64::NEG_INFINITY {
@@ -214,30 +238,44 @@ pub struct Beam {
 
 impl Beam {
     /// Around all rays that have been pushed.
-    pub fn around(packet: &Packet, frame: &Frame) -> Self {
-        let mut low = [f32::INFINITY; 3];
-        let mut high = [f32::NEG_INFINITY; 3];
-        let mut inverse = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
-        for index in 0..packet.count {
-            let (group, lane) = (&packet.groups[index / LANES], index % LANES);
-            for axis in 0..3 {
-                let origin = group.origin[axis][lane];
-                let pad = frame.pad(origin, group.slack[lane]);
-                low[axis] = low[axis].min((origin - pad).next_down());
-                high[axis] = high[axis].max((origin + pad).next_up());
-                for v in [group.inverse[axis][lane], group.inverse_far[axis][lane]] {
-                    inverse[axis] = [inverse[axis][0].min(v), inverse[axis][1].max(v)];
+    pub fn around(packet: &mut Packet) -> Self {
+        packet.seal();
+        let slack = packet.groups.iter().flat_map(|group| group.slack).fold(0.0, f64::max);
+        let (mut low, mut high, mut inverse) = ([0.0; 3], [0.0; 3], [[0.0; 2]; 3]);
+        for axis in 0..3 {
+            // Lane by lane first: eight comparisons at once.
+            let mut least = [f32::INFINITY; LANES];
+            let mut most = [f32::NEG_INFINITY; LANES];
+            let mut slowest = [f32::INFINITY; LANES];
+            let mut fastest = [f32::NEG_INFINITY; LANES];
+            for group in &packet.groups {
+                for lane in 0..LANES {
+                    let origin = group.origin[axis][lane];
+                    let (v, v_far) = (group.inverse[axis][lane], group.inverse_far[axis][lane]);
+                    least[lane] = least[lane].min(origin);
+                    most[lane] = most[lane].max(origin);
+                    slowest[lane] = slowest[lane].min(v).min(v_far);
+                    fastest[lane] = fastest[lane].max(v).max(v_far);
                 }
             }
+            let least = least.into_iter().fold(f32::INFINITY, f32::min);
+            let most = most.into_iter().fold(f32::NEG_INFINITY, f32::max);
+            let pad = packet.frame.pad(least.abs().max(most.abs()), slack);
+            low[axis] = (least - pad).next_down();
+            high[axis] = (most + pad).next_up();
+            inverse[axis] = [
+                slowest.into_iter().fold(f32::INFINITY, f32::min),
+                fastest.into_iter().fold(f32::NEG_INFINITY, f32::max),
+            ];
         }
-        let far_side = [0, 1, 2].map(|axis| usize::from(inverse[axis][0] > 0.0));
-        let side = |axis: usize, side: usize| if side == 1 { high[axis] } else { low[axis] };
-        Self {
-            near_origin: [0, 1, 2].map(|axis| side(axis, far_side[axis])),
-            far_origin: [0, 1, 2].map(|axis| side(axis, far_side[axis] ^ 1)),
-            inverse,
-            far_side,
+        let (mut near_origin, mut far_origin, mut far_side) = ([0.0; 3], [0.0; 3], [0; 3]);
+        for axis in 0..3 {
+            far_side[axis] = usize::from(inverse[axis][0] > 0.0);
+            let (near, far) = if far_side[axis] == 1 { (high, low) } else { (low, high) };
+            near_origin[axis] = near[axis];
+            far_origin[axis] = far[axis];
         }
+        Self { near_origin, far_origin, inverse, far_side }
     }
 
     /// Which of eight boxes (by their planes) any ray may meet before `bound`, and where the first may enter.

@@ -27,20 +27,40 @@ pub struct Block {
 }
 
 impl Block {
-    /// The pixels row by row from below.
-    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> {
-        let Self { x, y, width, height } = *self;
-        (y..y + height).flat_map(move |j| (x..x + width).map(move |i| (i, j)))
+    /// The pixels in the order in which they are traced: bricks of 4 × 2, eight bricks to a brick of 16 × 4, so that
+    /// rays that follow each other stay together.
+    pub fn pixels(&self) -> Vec<(u32, u32)> {
+        let mut pixels = Vec::with_capacity(self.width as usize * self.height as usize);
+        for corner in self.bricks([16, 4]) {
+            for brick in corner.bricks([4, 2]) {
+                let Self { x, y, width, height } = brick;
+                pixels.extend((y..y + height).flat_map(|j| (x..x + width).map(move |i| (i, j))));
+            }
+        }
+        pixels
+    }
+
+    /// The block in bricks of this size, row by row from below; the last ones may be smaller.
+    fn bricks(&self, [columns, rows]: [u32; 2]) -> Vec<Self> {
+        let mut bricks = Vec::new();
+        for y in (self.y..self.y + self.height).step_by(rows as usize) {
+            for x in (self.x..self.x + self.width).step_by(columns as usize) {
+                let (width, height) = (self.x + self.width - x, self.y + self.height - y);
+                bricks.push(Self { x, y, width: width.min(columns), height: height.min(rows) });
+            }
+        }
+        bricks
     }
 }
 
 /// The centres of n × n sub-pixels of each pixel, pixel by pixel.
-pub fn grid_places(block: Block, n: u32) -> Vec<(f64, f64)> {
+pub fn grid_places(pixels: &[(u32, u32)], n: u32) -> Vec<(f64, f64)> {
     let at = |whole: u32, part: u32| f64::from(whole) + (f64::from(part) + 0.5) / f64::from(n);
-    block
-        .pixels()
-        .flat_map(|(i, j)| (0..n).flat_map(move |b| (0..n).map(move |a| (at(i, a), at(j, b)))))
-        .collect()
+    let mut places = Vec::with_capacity(pixels.len() * (n * n) as usize);
+    for &(i, j) in pixels {
+        places.extend((0..n).flat_map(|b| (0..n).map(move |a| (at(i, a), at(j, b)))));
+    }
+    places
 }
 
 /// The mean of each pixel's n × n colours.
@@ -80,7 +100,7 @@ impl Quad {
     }
 }
 
-/// Adaptive oversampling of a block: the colours of its pixels, row by row from below.
+/// Adaptive oversampling of a block: the colours of its pixels, in the order of [`Block::pixels`].
 ///
 /// `trace` gives the colours of places it has not been asked for before in this call. Squares are divided level by
 /// level, so that a level's places are traced together.
@@ -96,7 +116,7 @@ pub fn adaptive(
         edge,
     };
     let mut known = HashMap::new();
-    let pixels: Vec<Quad> = block.pixels().map(pixel).collect();
+    let pixels: Vec<Quad> = block.pixels().into_iter().map(pixel).collect();
     learn(pixels.iter().flat_map(Quad::corners), &mut known, &mut trace);
     // levels[k] holds the squares of level k and, for those divided, where their quadrants begin in level k + 1.
     let mut levels: Vec<Vec<(Quad, Option<usize>)>> = Vec::new();
@@ -194,6 +214,7 @@ mod tests {
             let edge = 1 << depth;
             let expected: Vec<Vec3> = BLOCK
                 .pixels()
+                .into_iter()
                 .map(|(i, j)| {
                     let lower_left = LatticePoint { x: u64::from(i) * edge, y: u64::from(j) * edge };
                     by_definition(Quad { lower_left, edge }, 0, depth, 0.1, &scaled)
@@ -204,8 +225,17 @@ mod tests {
     }
 
     #[test]
+    fn every_pixel_stands_once_in_the_order() {
+        let mut pixels = Block { x: 5, y: 3, width: 37, height: 9 }.pixels();
+        assert_eq!(pixels[..9], [(5, 3), (6, 3), (7, 3), (8, 3), (5, 4), (6, 4), (7, 4), (8, 4), (9, 3)]);
+        pixels.sort_unstable_by_key(|&(i, j)| (j, i));
+        let expected: Vec<_> = (3..12).flat_map(|j| (5..42).map(move |i| (i, j))).collect();
+        assert_eq!(pixels, expected);
+    }
+
+    #[test]
     fn grid_places_are_centres() {
-        let places = grid_places(Block { x: 7, y: 1, width: 1, height: 1 }, 2);
+        let places = grid_places(&[(7, 1)], 2);
         assert_eq!(places, [(7.25, 1.25), (7.75, 1.25), (7.25, 1.75), (7.75, 1.75)]);
     }
 }

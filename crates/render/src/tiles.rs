@@ -135,6 +135,9 @@ fn spread(number: u32) -> u64 {
     (0..32).fold(0, |sum, bit| sum | u64::from(number >> bit & 1) << (2 * bit))
 }
 
+/// The samples of a grid that are held at once.
+const GRID_SAMPLES: usize = 1 << 12;
+
 struct Job<'a> {
     world: &'a World,
     options: &'a Options,
@@ -162,12 +165,11 @@ impl Job<'_> {
     }
 
     fn grid(&self, block: Block, n: u32, tracer: &mut Tracer<'_>) -> Vec<Vec3> {
-        // A row of pixels at a time keeps the samples of a fine grid from filling memory.
+        // Some pixels at a time, lest the samples of a fine grid fill memory.
+        let at_once = (GRID_SAMPLES / (n * n) as usize).max(1);
         let mut colors = Vec::new();
-        let rows_at_once = if n == 1 { block.height } else { 1 };
-        for row in (0..block.height).step_by(rows_at_once as usize) {
-            let rows = Block { y: block.y + row, height: rows_at_once, ..block };
-            let places = sampler::grid_places(rows, n);
+        for pixels in block.pixels().chunks(at_once) {
+            let places = sampler::grid_places(pixels, n);
             let rays: Vec<Ray> = places.iter().map(|&(x, y)| self.camera.ray(x, y)).collect();
             colors.append(&mut sampler::grid_means(&tracer.colors(&rays), n));
         }
@@ -190,7 +192,7 @@ impl Job<'_> {
 
     fn store(&self, block: Block, colors: &[Vec3], stats: &Stats) {
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
-        for ((i, j), color) in block.pixels().zip(colors) {
+        for ((i, j), color) in block.pixels().into_iter().zip(colors) {
             let x = (i - self.window.x) as usize;
             let y = (self.options.height - 1 - j - self.window.y) as usize;
             film.image.set_pixel(x, y, [color.x as f32, color.y as f32, color.z as f32, 1.0]);

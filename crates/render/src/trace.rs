@@ -71,7 +71,7 @@ impl<'a> Tracer<'a> {
     fn stream_colors(&mut self, rays: &[Ray], contributions: &[Vec3], depth: u32) -> Vec<Vec3> {
         let world = self.world;
         let mut colors = vec![world.background; rays.len()];
-        let met = self.meet(rays, true);
+        let met = self.meet(rays, depth == 0);
         for Met { index, point } in &met {
             colors[*index] = point.own_light(world.ambient);
         }

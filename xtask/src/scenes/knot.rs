@@ -21,7 +21,7 @@ fn point(turn: f64, angle: f64) -> [f64; 3] {
     let along = unit([0, 1, 2].map(|i| before[i] - behind[i]));
     let outward = unit(cross(along, [0.0, 1.0, 0.0]));
     let upward = cross(outward, along);
-    let bumps = 0.05 * sin(40.0 * turn) * sin(9.0 * angle) + 0.02 * sin(160.0 * turn + 3.0 * angle);
+    let bumps = 0.05 * sin(24.0 * turn) * sin(6.0 * angle) + 0.01 * sin(48.0 * turn + 3.0 * angle);
     let radius = 0.45 + bumps;
     [0, 1, 2].map(|i| center[i] + radius * (cos(angle) * outward[i] + sin(angle) * upward[i]))
 }
@@ -81,8 +81,8 @@ mod tests {
 
     #[test]
     fn faces_look_outward_and_the_tube_is_closed() {
-        let mesh = knot(300, 40, true);
-        assert_eq!(mesh.faces.len(), 2 * 300 * 40 + 2);
+        let mesh = knot(512, 68, true);
+        assert_eq!(mesh.faces.len(), 2 * 512 * 68 + 2);
         for face in &mesh.faces {
             let [a, b, c] = face.map(|i| mesh.positions[i as usize].map(f64::from));
             let edge = |to: [f64; 3]| [0, 1, 2].map(|i| to[i] - a[i]);
@@ -94,6 +94,6 @@ mod tests {
             }
         }
         let inside = |x: &f32| (-1e-6..=1.0 + 1e-6).contains(x);
-        assert!(mesh.positions[..12_000].iter().flatten().all(inside));
+        assert!(mesh.positions[..512 * 68].iter().flatten().all(inside));
     }
 }

@@ -78,7 +78,7 @@ fn descend<S: Simd, B: Batch>(
     packet: &mut Packet,
     batch: &mut B,
 ) -> u64 {
-    let beam = Beam::around(packet, &tree.frame);
+    let beam = Beam::around(packet);
     let (mut alive, mut bound) = packet.alive(simd);
     let mut tests = packet.count() as u64;
     stack.clear();
