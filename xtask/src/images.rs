@@ -64,20 +64,30 @@ impl Program {
     }
 
     fn command(self, place: &Place, text: &str, picture: &str) -> Vec<String> {
-        let (width, height) = (WIDTH, HEIGHT);
-        let line = match self {
-            Self::Dotray { threads } => format!(
-                "{}\nrender\n{text}\n{picture}\n--size\n{width}x{height}\n--threads\n{threads}\n--recursion\n{}\n--cutoff\n0",
-                place.program("dotray"),
-                LEVELS - 1
-            ),
-            Self::Tachyon => format!("tachyon\n{text}\n-numthreads\n1\n-format\nPPM\n-o\n{picture}"),
+        let words = |line: &str| line.split(' ').map(str::to_owned).collect::<Vec<_>>();
+        let file = |option: &str, path: &str| vec![format!("{option}{path}")];
+        match self {
+            Self::Dotray { threads } => [
+                vec![place.program("dotray"), "render".to_owned(), text.to_owned(), picture.to_owned()],
+                words(&format!("--size {WIDTH}x{HEIGHT} --threads {threads}")),
+                words(&format!("--recursion {} --cutoff 0", LEVELS - 1)),
+            ]
+            .concat(),
+            Self::Tachyon => [
+                vec!["tachyon".to_owned(), text.to_owned()],
+                words("-numthreads 1 -format PPM -o"),
+                vec![picture.to_owned()],
+            ]
+            .concat(),
             // Without a curve in the file, so that pictures can be compared.
-            Self::PovRay { bounding } => format!(
-                "povray\n+I{text}\n+O{picture}\n+FN\nFile_Gamma=1.0\n+W{width}\n+H{height}\n-D\n-V\n-A\n+WT1\n+BM{bounding}"
-            ),
-        };
-        line.split('\n').map(str::to_owned).collect()
+            Self::PovRay { bounding } => [
+                words("povray +FN File_Gamma=1.0 -D -V -A +WT1"),
+                file("+I", text),
+                file("+O", picture),
+                words(&format!("+W{WIDTH} +H{HEIGHT} +BM{bounding}")),
+            ]
+            .concat(),
+        }
     }
 }
 

@@ -111,7 +111,7 @@ pub fn check(place: &Place, action: Action) -> Result<(), String> {
     let (rustc, valgrind) = (rustc(), first_line("valgrind", &["--version"]).unwrap_or_default());
     if action == Action::Compare && (&committed.rustc, &committed.valgrind) != (&rustc, &valgrind) {
         println!(
-            "skipped: the committed counts are of {}, {}; here are {rustc}, {valgrind} (--check --update takes them anew)",
+            "skipped: the committed counts are of {}, {}; here are {rustc}, {valgrind} (see --update)",
             committed.rustc, committed.valgrind
         );
         return Ok(());

@@ -1,4 +1,4 @@
-//! What a run finds, as `results.json` keeps it. Each part carries its own machine and date, for parts may be run apart.
+//! What a run finds, as `results.json` keeps it. Each part carries its own machine and date: parts may be run apart.
 
 use crate::machine::Machine;
 use serde::Deserialize;

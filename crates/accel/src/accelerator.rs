@@ -1,5 +1,6 @@
 //! The five accelerators behind one face.
 
+use crate::batch::Batch;
 use crate::box_tree;
 use crate::brute;
 use crate::bsp::Bsp;
@@ -17,7 +18,6 @@ use crate::input::MAX_ITEMS;
 use crate::input::Settings;
 use crate::narrow::Frame;
 use crate::octree::Octree;
-use crate::batch::Batch;
 use crate::simd::Level;
 use crate::simd::dispatch;
 use crate::stats::Defect;

@@ -28,7 +28,14 @@ pub trait Batch {
     /// packet, as `leaf_range` does for one, and sets their new bounds ([`Packet::set_t_max`]). Returns whether any
     /// bound has changed.
     #[inline(always)]
-    fn leaf_packet<S: Simd>(&mut self, simd: S, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
+    fn leaf_packet<S: Simd>(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        active: u32,
+        first: u32,
+        count: u32,
+    ) -> bool {
         let mut changed = false;
         let mut left = active;
         while left != 0 {
@@ -37,7 +44,8 @@ pub trait Batch {
             let group = *packet.group(number);
             let alive = group.alive();
             for lane in (0..LANES).filter(|lane| alive >> lane & 1 == 1) {
-                let answer = self.leaf_range(simd, group.rays[lane] as usize, first, count, group.t_max[lane]);
+                let answer =
+                    self.leaf_range(simd, group.rays[lane] as usize, first, count, group.t_max[lane]);
                 if answer < group.t_max[lane] {
                     packet.set_t_max(number, lane, answer);
                     changed = true;

@@ -4,6 +4,7 @@
 //! "On building fast kd-trees for ray tracing" (2006); we depart from it in counting items in bins instead of sweeping over
 //! sorted events, and in not clipping items to cells: boxes are all this crate knows.
 
+use crate::batch::Batch;
 use crate::cells::Cut;
 use crate::cells::Leaf;
 use crate::cells::MAX_DEPTH;
@@ -17,7 +18,6 @@ use crate::cells::touches;
 use crate::clip::ClippedRay;
 use crate::input::Boxes;
 use crate::input::Kind;
-use crate::batch::Batch;
 use crate::simd::Simd;
 use crate::stats::Defect;
 use crate::stats::Stats;

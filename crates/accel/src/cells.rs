@@ -3,8 +3,8 @@
 //! An item stands in every cell that its box touches, so it may be shown more than once; a small memory of the items
 //! that a ray has met leaves most repetitions out.
 
-use crate::input::Boxes;
 use crate::batch::Batch;
+use crate::input::Boxes;
 use crate::simd::Simd;
 use crate::stats::Defect;
 use dotray_geometry::Aabb;

@@ -90,8 +90,8 @@ mod box_tree;
 pub mod accelerator;
 
 pub use accelerator::{Accelerator, Built};
-pub use input::{Boxes, GroupEvent, Kind, MAX_ITEMS, Quality, Settings};
 pub use batch::Batch;
+pub use input::{Boxes, GroupEvent, Kind, MAX_ITEMS, Quality, Settings};
 pub use query::Query;
 pub use simd::Level;
 pub use stats::{Defect, Stats};

@@ -138,7 +138,8 @@ impl Frame {
 
     /// The pad of a ray's origin along an axis, at least.
     pub(crate) fn pad(&self, origin: f32, slack: f64) -> f32 {
-        let pad = 2.0 * self.slack.relative * f64::from(origin.abs()) + slack * self.slack.absolute * self.scale;
+        let pad =
+            2.0 * self.slack.relative * f64::from(origin.abs()) + slack * self.slack.absolute * self.scale;
         (pad as f32).next_up()
     }
 

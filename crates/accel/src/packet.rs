@@ -286,7 +286,8 @@ impl Beam {
         let mut leave = splat(bound);
         for axis in 0..3 {
             let far_side = self.far_side[axis] & 1;
-            let near = f32x8::load_array_ref(simd, &planes[axis][far_side ^ 1]) - splat(self.near_origin[axis]);
+            let near =
+                f32x8::load_array_ref(simd, &planes[axis][far_side ^ 1]) - splat(self.near_origin[axis]);
             let far = f32x8::load_array_ref(simd, &planes[axis][far_side]) - splat(self.far_origin[axis]);
             let (v0, v1) = (splat(self.inverse[axis][0]), splat(self.inverse[axis][1]));
             enter = enter.max((near * v0).min(near * v1));

@@ -170,7 +170,8 @@ mod tests {
     #[test]
     fn attenuation_by_hand() {
         let attenuation = Attenuation { constant: 1.0, linear: 0.5, quadratic: 0.25 };
-        let light = Light::new(&model::Light::Point { color: Vec3::ONE, position: Vec3::Y * 2.0, attenuation });
+        let light =
+            Light::new(&model::Light::Point { color: Vec3::ONE, position: Vec3::Y * 2.0, attenuation });
         let incident = light.incident(Vec3::ZERO, 0, 1).expect("in front");
         assert_eq!((incident.towards, incident.distance), (Vec3::Y, 2.0));
         assert_eq!(incident.strength, Vec3::splat(1.0 / 3.0));

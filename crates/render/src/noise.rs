@@ -96,7 +96,8 @@ pub fn noise_gradient(q: Vec3) -> Vec3 {
         let along = |axis: usize| if i >> axis & 1 == 1 { fades[axis] } else { 1.0 - fades[axis] };
         let slope = |axis: usize| if i >> axis & 1 == 1 { slopes[axis] } else { -slopes[axis] };
         let (wx, wy, wz) = (along(0), along(1), along(2));
-        sum += *g * (wx * wy * wz) + Vec3::new(slope(0) * wy * wz, wx * slope(1) * wz, wx * wy * slope(2)) * value;
+        sum += *g * (wx * wy * wz)
+            + Vec3::new(slope(0) * wy * wz, wx * slope(1) * wz, wx * wy * slope(2)) * value;
     }
     sum
 }

@@ -146,7 +146,12 @@ impl Options {
             self.light_samples.to_string(),
             "1 to 65536".to_owned(),
         )?;
-        expect((8..=1024).contains(&self.tile_size), "tile-size", self.tile_size.to_string(), "8 to 1024".to_owned())?;
+        expect(
+            (8..=1024).contains(&self.tile_size),
+            "tile-size",
+            self.tile_size.to_string(),
+            "8 to 1024".to_owned(),
+        )?;
         match self.antialias {
             Antialias::None => {}
             Antialias::Grid(n) => {

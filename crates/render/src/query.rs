@@ -97,7 +97,14 @@ impl Batch for NearestBatch<'_> {
     }
 
     #[inline(always)]
-    fn leaf_packet<S: Simd>(&mut self, simd: S, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
+    fn leaf_packet<S: Simd>(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        active: u32,
+        first: u32,
+        count: u32,
+    ) -> bool {
         let shapes = self.shapes;
         let mut changed = false;
         for position in first..first + count {
@@ -180,7 +187,11 @@ impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
         for found in &mut self.found {
             if let Between::Crossed(crossings) = found {
                 crossings.sort_by(|a, b| {
-                    a.hit.t.total_cmp(&b.hit.t).then(a.number.cmp(&b.number)).then(a.hit.face.cmp(&b.hit.face))
+                    a.hit
+                        .t
+                        .total_cmp(&b.hit.t)
+                        .then(a.number.cmp(&b.number))
+                        .then(a.hit.face.cmp(&b.hit.face))
                 });
                 crossings.dedup();
             }
@@ -232,7 +243,14 @@ impl<F: Fn(u32) -> bool> Batch for ShadowBatch<'_, F> {
     }
 
     #[inline(always)]
-    fn leaf_packet<S: Simd>(&mut self, simd: S, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
+    fn leaf_packet<S: Simd>(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        active: u32,
+        first: u32,
+        count: u32,
+    ) -> bool {
         let shapes = self.shapes;
         let mut changed = false;
         for position in first..first + count {

@@ -189,7 +189,13 @@ mod tests {
     }
 
     /// The definition of SPEC 4, word for word, without sharing.
-    fn by_definition(quad: Quad, level: u32, depth: u32, threshold: f64, color: &impl Fn(LatticePoint) -> Vec3) -> Vec3 {
+    fn by_definition(
+        quad: Quad,
+        level: u32,
+        depth: u32,
+        threshold: f64,
+        color: &impl Fn(LatticePoint) -> Vec3,
+    ) -> Vec3 {
         let corners = quad.corners().map(color);
         if level == depth || !differ(corners, threshold) {
             return quarter_sum(corners);

@@ -43,7 +43,8 @@ impl<'a> ShadePoint<'a> {
         let material = &world.materials[world.shapes.material(nearest.position) as usize];
         let surface = world.shapes.surface(nearest.position, ray, nearest.hit);
         let procedural = &material.procedural;
-        let plain = procedural.bumps.is_empty() && surface.in_object.shading_normal == surface.in_object.geometric_normal;
+        let plain = procedural.bumps.is_empty()
+            && surface.in_object.shading_normal == surface.in_object.geometric_normal;
         let outward = if plain {
             surface.geometric_normal
         } else {
@@ -79,7 +80,7 @@ impl<'a> ShadePoint<'a> {
     /// what the light would give if nothing lay between.
     pub fn lit(&self, incident: &Incident) -> Vec3 {
         let cosine = self.normal.dot(incident.towards);
-        if !(cosine > 0.0) {
+        if cosine <= 0.0 {
             return Vec3::ZERO;
         }
         (self.diffuse(cosine) + self.highlight(incident.towards)) * incident.strength
@@ -112,7 +113,7 @@ impl<'a> ShadePoint<'a> {
         let normal = if self.direction.dot(self.normal) >= 0.0 { self.geometric_normal } else { self.normal };
         let cos_in = -self.direction.dot(normal);
         let cos_out_squared = 1.0 - eta * eta * (1.0 - cos_in * cos_in);
-        if !(cos_out_squared >= 0.0) {
+        if cos_out_squared < 0.0 {
             return None;
         }
         let direction = self.direction * eta + normal * (eta * cos_in - cos_out_squared.sqrt());

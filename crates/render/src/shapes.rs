@@ -87,9 +87,6 @@ impl Slot {
     }
 }
 
-/// The most shapes that a scene may hold.
-pub const MAX_SHAPES: u32 = 1 << Slot::INDEX_BITS;
-
 /// The shape at a point hit, as shading wants it: in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldSurface {
@@ -196,16 +193,23 @@ impl Shapes {
         match shape {
             Shape::Sphere(sphere) => {
                 let in_world = similarity.and_then(|scale| {
-                    Sphere::new(world_from_object.transform_point3(sphere.center()), sphere.radius() * scale).ok()
+                    Sphere::new(world_from_object.transform_point3(sphere.center()), sphere.radius() * scale)
+                        .ok()
                 });
                 match in_world {
                     Some(sphere) => put(&mut self.spheres, Form::Sphere, sphere),
-                    None => put(&mut self.framed_spheres, Form::FramedSphere, Framed::new(*sphere, bounds(), None)),
+                    None => put(
+                        &mut self.framed_spheres,
+                        Form::FramedSphere,
+                        Framed::new(*sphere, bounds(), None),
+                    ),
                 }
             }
             Shape::Cuboid(cuboid) => match axis_aligned(cuboid, &transform) {
                 Some(cuboid) => put(&mut self.cuboids, Form::Cuboid, cuboid),
-                None => put(&mut self.framed_cuboids, Form::FramedCuboid, Framed::new(*cuboid, bounds(), None)),
+                None => {
+                    put(&mut self.framed_cuboids, Form::FramedCuboid, Framed::new(*cuboid, bounds(), None))
+                }
             },
             Shape::Cylinder(cylinder) => match similarity {
                 Some(scale) => put(
@@ -214,14 +218,21 @@ impl Shapes {
                     OrientedCylinder::from_object(cylinder, world_from_object, scale),
                 ),
                 None => {
-                    let spine = Spine::new(world_from_object, &bounds(), cylinder.center(), cylinder.radius());
-                    put(&mut self.framed_cylinders, Form::FramedCylinder, Framed::new(*cylinder, bounds(), spine))
+                    let spine =
+                        Spine::new(world_from_object, &bounds(), cylinder.center(), cylinder.radius());
+                    put(
+                        &mut self.framed_cylinders,
+                        Form::FramedCylinder,
+                        Framed::new(*cylinder, bounds(), spine),
+                    )
                 }
             },
             Shape::Cone(cone) => match similarity {
-                Some(scale) => {
-                    put(&mut self.cones, Form::Cone, OrientedCone::from_object(cone, world_from_object, scale))
-                }
+                Some(scale) => put(
+                    &mut self.cones,
+                    Form::Cone,
+                    OrientedCone::from_object(cone, world_from_object, scale),
+                ),
                 None => {
                     let spine = Spine::new(world_from_object, &bounds(), cone.center(), cone.radius());
                     put(&mut self.framed_cones, Form::FramedCone, Framed::new(*cone, bounds(), spine))
@@ -386,7 +397,13 @@ impl Shapes {
     }
 
     /// A triangle was met in the world, so its barycentric coordinates are those of the world's corners.
-    fn triangle_surface(&self, position: u32, triangle: &Triangle, frame: &Transform, ray: &Ray) -> WorldSurface {
+    fn triangle_surface(
+        &self,
+        position: u32,
+        triangle: &Triangle,
+        frame: &Transform,
+        ray: &Ray,
+    ) -> WorldSurface {
         let corners = &self.triangles[self.slots[position as usize].index()];
         let weights = TriangleRay::new(ray).barycentric(corners);
         let in_object = triangle.surface_at(weights);

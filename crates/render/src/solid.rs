@@ -67,7 +67,10 @@ mod tests {
         assert_eq!(weight(&checker, Vec3::new(0.5, 0.5, 0.5)), 1.0);
         assert_eq!(weight(&checker, Vec3::new(1.5, 0.5, 0.5)), 0.0);
         assert_eq!(weight(&checker, Vec3::new(-0.5, 0.5, 0.5)), 0.0);
-        assert_eq!(weight(&checker, Vec3::new(0.5, 1.0 - 1e-12, 0.5)), weight(&checker, Vec3::new(0.5, 1.0, 0.5)));
+        assert_eq!(
+            weight(&checker, Vec3::new(0.5, 1.0 - 1e-12, 0.5)),
+            weight(&checker, Vec3::new(0.5, 1.0, 0.5))
+        );
     }
 
     #[test]

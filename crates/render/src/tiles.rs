@@ -77,9 +77,10 @@ pub fn render(world: &World, options: &Options, observer: &dyn Observer) -> Resu
     options.validate()?;
     let start = Instant::now();
     let window = options.window();
-    let image = Image::new(window.width as usize, window.height as usize, Channels::Rgb).map_err(|error| {
-        RenderError::Film { width: window.width, height: window.height, reason: error.to_string() }
-    })?;
+    let image =
+        Image::new(window.width as usize, window.height as usize, Channels::Rgb).map_err(|error| {
+            RenderError::Film { width: window.width, height: window.height, reason: error.to_string() }
+        })?;
     let film_bytes = size_of_val(image.samples()) as u64;
     let film = Mutex::new(Film { image, stats: Stats::default(), finished_pixels: 0 });
     let job = Job {
@@ -257,7 +258,11 @@ impl Borders {
     }
 
     /// The indices of the points that the caller traces, with its claims on those that others may want.
-    fn claim(&self, points: &[LatticePoint], on_border: impl Fn(&LatticePoint) -> bool) -> (Vec<usize>, Claims<'_>) {
+    fn claim(
+        &self,
+        points: &[LatticePoint],
+        on_border: impl Fn(&LatticePoint) -> bool,
+    ) -> (Vec<usize>, Claims<'_>) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let mut claims = Claims { borders: self, points: Vec::new() };
         let mut mine = Vec::with_capacity(points.len());
@@ -274,7 +279,11 @@ impl Borders {
         (mine, claims)
     }
 
-    fn publish<'p>(&self, claims: Claims<'_>, colors: impl Iterator<Item = (&'p LatticePoint, &'p Option<Vec3>)>) {
+    fn publish<'p>(
+        &self,
+        claims: Claims<'_>,
+        colors: impl Iterator<Item = (&'p LatticePoint, &'p Option<Vec3>)>,
+    ) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         for (point, color) in colors {
             if let Some(entry @ None) = known.get_mut(point) {

@@ -9,6 +9,7 @@ use crate::texture::Texture;
 use dotray_accel::Accelerator;
 use dotray_accel::Boxes;
 use dotray_accel::GroupEvent;
+use dotray_accel::MAX_ITEMS;
 use dotray_accel::Settings;
 use dotray_geometry::Aabb;
 use dotray_geometry::Transform;
@@ -79,7 +80,7 @@ impl World {
         let start = Instant::now();
         let textures = load_textures(&resolved.textures, files, &options.image_limits)?;
         seconds.push(("textures", start.elapsed().as_secs_f64()));
-        if resolved.shape_count > shapes::MAX_SHAPES {
+        if resolved.shape_count > MAX_ITEMS {
             return Err(vec![too_many_shapes(resolved.shape_count)]);
         }
 
@@ -91,7 +92,7 @@ impl World {
             count: resolved.shape_count,
         };
         let groups = group_events(&resolved);
-        let settings = Settings { quality: options.quality, ..Settings::default() };
+        let settings = Settings { quality: options.quality };
         let build = || Accelerator::build(options.accel, &boxes, &groups, &settings);
         let built = match options.threads.map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build()) {
             Some(Ok(pool)) => pool.install(build),
@@ -177,7 +178,7 @@ fn too_many_shapes(count: u32) -> Diagnostic {
     Diagnostic {
         severity: Severity::Error,
         code: "too-many-shapes",
-        message: format!("the scene holds {count} shapes; at most {} can be rendered", shapes::MAX_SHAPES),
+        message: format!("the scene holds {count} shapes; at most {MAX_ITEMS} can be rendered"),
         span: None,
         label: String::new(),
         notes: Vec::new(),
@@ -195,7 +196,7 @@ fn load_textures(
     for texture in textures {
         match load_texture(texture, files, limits) {
             Ok(texture) => loaded.push(texture),
-            Err(fault) => faults.push(fault),
+            Err(fault) => faults.push(*fault),
         }
     }
     if faults.is_empty() { Ok(loaded) } else { Err(faults) }
@@ -205,15 +206,17 @@ fn load_texture(
     texture: &ResolvedTexture,
     files: &dyn Files,
     limits: &dotray_image::Limits,
-) -> Result<Texture, Diagnostic> {
-    let fault = |code, message, notes: Vec<String>, help: &str| Diagnostic {
-        severity: Severity::Error,
-        code,
-        message,
-        span: Some(texture.span),
-        label: String::new(),
-        notes: notes.into_iter().map(|note| (None, note)).collect(),
-        help: Some(help.to_owned()),
+) -> Result<Texture, Box<Diagnostic>> {
+    let fault = |code, message, notes: Vec<String>, help: &str| {
+        Box::new(Diagnostic {
+            severity: Severity::Error,
+            code,
+            message,
+            span: Some(texture.span),
+            label: String::new(),
+            notes: notes.into_iter().map(|note| (None, note)).collect(),
+            help: Some(help.to_owned()),
+        })
     };
     let mut tried = Vec::new();
     for path in &texture.candidates {

@@ -1,4 +1,5 @@
-//! Scenes as raw float32: x y z r of spheres, both ends and their radii of cylinders and cones, nine numbers a triangle.
+//! Scenes as raw float32: x y z r of spheres, both ends and their radii of cylinders and cones, nine numbers a
+//! triangle.
 
 use crate::scenes::LIGHT;
 use crate::scenes::Scene;

@@ -5,12 +5,12 @@
 //! Overbeck et al., "Large ray packets for real-time Whitted ray tracing", 2008; we keep a mask of groups where they
 //! keep ranges, and eight-wide nodes).
 
+use crate::batch::Batch;
 use crate::bvh::wide::Child;
 use crate::bvh::wide::Tree;
 use crate::clip::ClippedRay;
 use crate::packet::Beam;
 use crate::packet::Packet;
-use crate::batch::Batch;
 use crate::simd::Simd;
 
 /// A child that waits for some groups.
@@ -29,7 +29,8 @@ pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, batch: &mut B) {
     let mut octants: [Vec<u32>; 8] = Default::default();
     for i in 0..batch.len() {
         let direction = batch.query(i).ray.direction;
-        let octant = (0..3).map(|axis| usize::from(direction[axis].is_sign_negative()) << axis).sum::<usize>();
+        let octant =
+            (0..3).map(|axis| usize::from(direction[axis].is_sign_negative()) << axis).sum::<usize>();
         octants[octant & 7].push(i as u32);
     }
     for rays in &octants {
