@@ -19,13 +19,13 @@ picture slides 720x480
 picture hello 720x480
 picture lake 600x400
 picture virus 720x480
-picture chess 720x480
+picture chess 600x400
 picture desk 720x480 --recursion 8 --cutoff 0.01
 picture glasses 720x480 --recursion 10 --cutoff 0.01
 picture caffeine 720x480
 picture nautilus 720x480
-picture lenses 720x480 --recursion 10 --cutoff 0.01
-picture gyroid 720x480
+picture lenses 600x400 --recursion 10 --cutoff 0.01
+picture gyroid 600x400
 picture sphereflake 720x480 --recursion 6
 picture knot 720x480
 picture cornell 720x480 --recursion 8 --cutoff 0.01

@@ -18,6 +18,7 @@ use crate::input::MAX_ITEMS;
 use crate::input::Settings;
 use crate::narrow::Frame;
 use crate::octree::Octree;
+use crate::simd::Fallback;
 use crate::simd::Level;
 use crate::simd::dispatch;
 use crate::stats::Defect;
@@ -144,10 +145,8 @@ impl Accelerator {
     /// same in effect for every level and kind.
     pub fn walk<B: Batch>(&self, level: Level, batch: &mut B) {
         match &self.structure {
-            Structure::Brute => {
-                let items = self.items;
-                dispatch!(level, simd => brute::walk(simd, items, batch));
-            }
+            // These three and what they call have no vector code, so one copy serves every level.
+            Structure::Brute => brute::walk(Fallback::new(), self.items, batch),
             Structure::Tree(tree) => {
                 // Only scenes with very deeply nested groups ask for more than fits the fixed stack.
                 let (mut fixed, mut grown) = ([0; MAX_STACK + WIDTH], Vec::new());
@@ -159,8 +158,8 @@ impl Accelerator {
                 };
                 dispatch!(level, simd => bvh::walk::walk(simd, tree, stack, batch));
             }
-            Structure::Octree(octree) => dispatch!(level, simd => octree.walk(simd, batch)),
-            Structure::Bsp(bsp) => dispatch!(level, simd => bsp.walk(simd, batch)),
+            Structure::Octree(octree) => octree.walk(Fallback::new(), batch),
+            Structure::Bsp(bsp) => bsp.walk(Fallback::new(), batch),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The only file that names `fearless_simd`: which level this machine has, and what kernels need of it.
 
 pub use fearless_simd::prelude;
-pub use fearless_simd::{Level, Simd, dispatch};
+pub use fearless_simd::{Fallback, Level, Simd, dispatch};
 pub use fearless_simd::{f32x4, f32x8, f64x2, f64x4, f64x8, i32x8, mask32x8, mask64x4, mask64x8, u32x8};
 
 use std::sync::OnceLock;

@@ -60,8 +60,9 @@ impl<'a> NearestBatch<'a> {
         }
     }
 
-    /// Tests one shape; answers with the new upper bound of t.
-    #[inline(always)]
+    /// Tests one shape; answers with the new upper bound of t. Not inlined: a copy in every kernel of every SIMD
+    /// level would double the time that this crate takes to build.
+    #[inline(never)]
     fn test(&mut self, i: usize, position: u32, t_max: f64) -> f64 {
         self.tests[i].shapes += 1;
         let triangle_ray = &self.triangle_rays[if self.triangle_rays.len() == 1 { 0 } else { i }];
@@ -199,7 +200,7 @@ impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
     }
 
     /// Tests one shape; answers whether it blocks the ray.
-    #[inline(always)]
+    #[inline(never)]
     fn blocks(&mut self, i: usize, position: u32) -> bool {
         self.tests[i].shapes += 1;
         let shadow = &self.rays[i];

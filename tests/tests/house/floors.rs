@@ -68,7 +68,7 @@ fn file_faults(source: &Source, path: &[&str], modules: &[String], floor: usize,
             }
             "crate" => match modules.iter().position(|module| module == used) {
                 Some(other) if other <= floor => {}
-                Some(_) => fault(at, format!("`{}` uses `{used}`, which stands above it", path[0])),
+                Some(_) => fault(at, format!("`{}` uses `{used}`, which is listed below it", path[0])),
                 None => fault(at, format!("`crate::{used}` goes by the root: name the module")),
             },
             // From the file's own module, `super` goes one module up; the first module's is the root.

@@ -35,9 +35,44 @@ const MATERIALS: [&str; 7] = [
     "0 0 0  0.2 0.4 0.2  0 0 0  0.1 0.3 0.1  0 0 1 -1 !checker scale=2!",
 ];
 
-const HEAD: &str = "#camera 0.3 0.6 9  0 0 -1  0.1 1 0  0.5\n#background 0.1 0.2 0.3\n#ambient 0.3 0.3 0.3\n\
-    #light_point 0.8 0.8 0.7  -5 6 7  1 0 0\n#light_dir 0.3 0.3 0.4  0.2 -1 -0.4\n\
-    #light_spot 0.6 0.5 0.5  4 3 6  -4 -3 -6  0.5 0.01 0.001  0.5 0.02\n";
+/// Where a scene stands in the world, and how large it is there.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement {
+    pub scale: f64,
+    pub shift: [f64; 3],
+}
+
+impl Placement {
+    /// As the shapes are written.
+    pub const PLAIN: Self = Self { scale: 1.0, shift: [0.0; 3] };
+
+    /// Camera and lights for a scene that stands here.
+    fn head(self) -> String {
+        let place = |p: [f64; 3]| {
+            let [x, y, z] = [0, 1, 2].map(|i| self.scale * p[i] + self.shift[i]);
+            format!("{x} {y} {z}")
+        };
+        let (linear, quadratic) = (0.01 / self.scale, 0.001 / (self.scale * self.scale));
+        let (eye, lamp, spot) = (place([0.3, 0.6, 9.0]), place([-5.0, 6.0, 7.0]), place([4.0, 3.0, 6.0]));
+        format!(
+            "#camera {eye}  0 0 -1  0.1 1 0  0.5\n#background 0.1 0.2 0.3\n#ambient 0.3 0.3 0.3\n\
+             #light_point 0.8 0.8 0.7  {lamp}  1 0 0\n#light_dir 0.3 0.3 0.4  0.2 -1 -0.4\n\
+             #light_spot 0.6 0.5 0.5  {spot}  -4 -3 -6  0.5 {linear} {quadratic}  0.5 0.02\n"
+        )
+    }
+
+    fn group(self) -> String {
+        let (s, [x, y, z]) = (self.scale, self.shift);
+        format!("#group_begin {s} 0 0 {x}  0 {s} 0 {y}  0 0 {s} {z}  0 0 0 1\n")
+    }
+}
+
+/// Any placement: small, large, far from the origin.
+fn placement() -> impl Strategy<Value = Placement> {
+    let scale = prop_oneof![2 => Just(1.0), 1 => Just(1e-4), 1 => Just(3e5)];
+    let shift = prop_oneof![2 => Just([0.0; 3]), 1 => Just([1000.0, -300.0, 70.0])];
+    (scale, shift).prop_map(|(scale, shift)| Placement { scale, shift: shift.map(|v| v * scale) })
+}
 
 /// A coordinate: half of them on a coarse grid, so that surfaces coincide.
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -137,16 +172,18 @@ fn write_group(group: &AnyGroup, text: &mut String) {
 }
 
 /// The scene as `.ray` text.
-pub fn text(groups: &[AnyGroup]) -> String {
-    let mut text = HEAD.to_owned();
+pub fn text(groups: &[AnyGroup], placement: Placement) -> String {
+    let mut text = placement.head();
     for material in MATERIALS {
         let _ = writeln!(text, "#material {material}");
     }
+    text.push_str(&placement.group());
     groups.iter().for_each(|group| write_group(group, &mut text));
+    text.push_str("#group_end\n");
     text
 }
 
 /// Any scene, as text.
 pub fn scene() -> impl Strategy<Value = String> {
-    vec(group(), 1..4).prop_map(|groups| text(&groups))
+    (vec(group(), 1..4), placement()).prop_map(|(groups, placement)| text(&groups, placement))
 }

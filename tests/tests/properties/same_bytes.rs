@@ -107,7 +107,7 @@ proptest! {
     #[test]
     fn random_scenes_are_the_same_with_every_accelerator(text in random::scene(), adaptive in any::<bool>()) {
         let antialias = if adaptive { dotray_render::Antialias::ADAPTIVE } else { dotray_render::Antialias::None };
-        let options = Options { width: 26, height: 21, antialias, ..Options::default() };
+        let options = Options { width: 40, height: 31, antialias, ..Options::default() };
         let scene = pictures::scene_of_text("random.ray", text.as_str()).map_err(TestCaseError::fail)?;
         let expected = plain(&scene, &options);
         for (i, kind) in Kind::ALL.into_iter().enumerate() {

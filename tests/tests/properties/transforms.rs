@@ -3,6 +3,7 @@
 use crate::judge::Judge;
 use crate::judge::V;
 use crate::random;
+use crate::random::Placement;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
 use dotray_geometry::shape::TriangleRay;
@@ -54,7 +55,7 @@ fn hits_are_those_of_the_judge() {
     let mut faults = Vec::new();
     for case in 0..150 {
         let groups = vec(random::group(), 1..4).new_tree(&mut runner).expect("groups can be made").current();
-        let text = random::text(&groups);
+        let text = random::text(&groups, Placement::PLAIN);
         let (shapes, judge) = (baked(text.clone()), Judge::new(&groups));
         let eye = [[0.3, 0.6, 9.0], [-7.0, 2.0, 3.0], [0.1, 0.2, 0.15]][case % 3];
         for (origin, direction) in rays(eye) {
