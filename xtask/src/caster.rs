@@ -32,15 +32,22 @@ enum Baked {
     Cylinder(OrientedCylinder),
     Cone(OrientedCone),
     Triangle([Vec3; 3]),
-    /// Anything else, in its own coordinates: the number of its transform.
-    Framed(Shape, u32),
+    /// Anything else, by its number in a list of its own.
+    Framed(u32),
+}
+
+/// A shape in its own coordinates.
+#[derive(Clone, Copy)]
+struct Framed {
+    shape: Shape,
+    transform: Transform,
 }
 
 /// A scene that answers rays.
 pub struct Caster {
     accelerator: Accelerator,
     baked: Vec<Baked>,
-    frames: Vec<Transform>,
+    framed: Vec<Framed>,
     triangles: bool,
 }
 
@@ -58,7 +65,7 @@ impl Found {
     }
 }
 
-struct Items<'a>(&'a [Baked], &'a [Transform]);
+struct Items<'a>(&'a [Baked], &'a [Framed]);
 
 impl Boxes for Items<'_> {
     fn len(&self) -> u32 {
@@ -76,16 +83,18 @@ impl Boxes for Items<'_> {
             Baked::Cylinder(c) => rod(c.base(), c.base() + c.axis() * c.height(), c.radius()),
             Baked::Cone(c) => rod(c.base(), c.base() + c.axis() * c.height(), c.radius()),
             Baked::Triangle(corners) => Aabb::around(*corners),
-            Baked::Framed(shape, frame) => shape.world_bounds(&self.1[*frame as usize].world_from_object),
+            Baked::Framed(number) => {
+                let Framed { shape, transform } = &self.1[*number as usize];
+                shape.world_bounds(&transform.world_from_object)
+            }
         }
     }
 }
 
-fn bake(shape: &Shape, frame: u32, frames: &[Transform]) -> Baked {
-    let transform = &frames[frame as usize];
+fn bake(shape: &Shape, frame: u32, transform: &Transform) -> Option<Baked> {
     let world_from_object = &transform.world_from_object;
     let scale = if frame == 0 { Some(1.0) } else { transform.similarity_scale() };
-    let in_world = match (shape, scale) {
+    match (shape, scale) {
         (Shape::Sphere(sphere), Some(scale)) => {
             let center = world_from_object.transform_point3(sphere.center());
             Sphere::new(center, sphere.radius() * scale).ok().map(Baked::Sphere)
@@ -100,19 +109,25 @@ fn bake(shape: &Shape, frame: u32, frames: &[Transform]) -> Baked {
             Some(Baked::Triangle(triangle.vertices().map(|v| world_from_object.transform_point3(v))))
         }
         (Shape::Sphere(_) | Shape::Cylinder(_) | Shape::Cone(_) | Shape::Cuboid(_), _) => None,
-    };
-    in_world.unwrap_or(Baked::Framed(*shape, frame))
+    }
 }
 
 impl Caster {
     /// Everything before the tree: the scene's shapes as rays meet them.
     pub fn bake(resolved: &Resolved) -> Unbuilt {
         let mut baked = Vec::with_capacity(resolved.shape_count as usize);
+        let mut framed = Vec::new();
         for run in &resolved.runs {
-            let shapes = resolved.files[run.file.0 as usize].shapes(run.kind, run.first, run.count);
-            baked.extend(shapes.map(|shape| bake(&shape, run.frame, &resolved.frames)));
+            let transform = &resolved.frames[run.frame as usize];
+            for shape in resolved.files[run.file.0 as usize].shapes(run.kind, run.first, run.count) {
+                let in_world = bake(&shape, run.frame, transform);
+                baked.push(in_world.unwrap_or_else(|| {
+                    framed.push(Framed { shape, transform: *transform });
+                    Baked::Framed(framed.len() as u32 - 1)
+                }));
+            }
         }
-        Unbuilt { baked, frames: resolved.frames.clone() }
+        Unbuilt { baked, framed }
     }
 
     /// The instructions that the kernels use.
@@ -127,7 +142,7 @@ impl Caster {
 
     /// The bytes of tree and shapes.
     pub fn memory(&self) -> usize {
-        self.accelerator.memory() + size_of_val(&self.baked[..])
+        self.accelerator.memory() + size_of_val(&self.baked[..]) + size_of_val(&self.framed[..])
     }
 
     /// Finds the nearest hit of each ray.
@@ -159,8 +174,9 @@ impl Caster {
             Baked::Triangle(corners) => triangle_ray
                 .intersect(corners)
                 .map_or(Crossings::NONE, |t| Crossings::one(Hit { t, face: 0 })),
-            Baked::Framed(shape, frame) => {
-                shape.crossings(&ray.transformed(&self.frames[*frame as usize].object_from_world))
+            Baked::Framed(number) => {
+                let Framed { shape, transform } = &self.framed[*number as usize];
+                shape.crossings(&ray.transformed(&transform.object_from_world))
             }
         }
     }
@@ -172,10 +188,10 @@ impl Caster {
             Baked::Cylinder(cylinder) => cylinder.normal(ray, found.hit),
             Baked::Cone(cone) => cone.normal(ray, found.hit),
             Baked::Triangle([a, b, c]) => (*b - *a).cross(*c - *a).normalize_or(Vec3::Y),
-            Baked::Framed(shape, frame) => {
-                let frame = &self.frames[*frame as usize];
-                let in_object = shape.surface(&ray.transformed(&frame.object_from_world), found.hit);
-                frame.world_normal(in_object.geometric_normal)
+            Baked::Framed(number) => {
+                let Framed { shape, transform } = &self.framed[*number as usize];
+                let in_object = shape.surface(&ray.transformed(&transform.object_from_world), found.hit);
+                transform.world_normal(in_object.geometric_normal)
             }
         }
     }
@@ -184,20 +200,20 @@ impl Caster {
 /// Shapes without a tree.
 pub struct Unbuilt {
     baked: Vec<Baked>,
-    frames: Vec<Transform>,
+    framed: Vec<Framed>,
 }
 
 impl Unbuilt {
     /// Builds the tree and puts the shapes in its order, on the threads of the pool it is called in.
     pub fn build(self) -> Caster {
-        let Self { baked, frames } = self;
-        let built = Accelerator::build(Kind::Bvh, &Items(&baked, &frames), &[], &Settings::default());
+        let Self { baked, framed } = self;
+        let built = Accelerator::build(Kind::Bvh, &Items(&baked, &framed), &[], &Settings::default());
         let baked = match &built.order {
             Some(order) => order.iter().map(|&item| baked[item as usize]).collect(),
             None => baked,
         };
         let triangles = baked.iter().any(|shape| matches!(shape, Baked::Triangle(_)));
-        Caster { accelerator: built.accelerator, baked, frames, triangles }
+        Caster { accelerator: built.accelerator, baked, framed, triangles }
     }
 }
 

@@ -46,13 +46,13 @@ pub fn run_only_child(program: &str, arguments: &[String], log: &Path, limit: f6
 /// Tells what could not be started or understood.
 pub fn measure(command: &[String], log: &Path, limit: f64) -> Result<Usage, String> {
     let this = std::env::current_exe().map_err(|fault| fault.to_string())?;
-    let output = Command::new(this)
+    let output = Command::new(&this)
         .args(["measure", "--limit", &limit.to_string(), "--log"])
         .arg(log)
         .arg("--")
         .args(command)
         .output()
-        .map_err(|fault| fault.to_string())?;
+        .map_err(|fault| format!("{}: {fault}", this.display()))?;
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).trim().to_owned());
     }

@@ -127,8 +127,11 @@ impl Course {
             median(&self.runs.iter().map(value).collect::<Vec<_>>()).unwrap_or_default()
         };
         let ours = Program::Dotray { threads: 1 };
+        let theirs = self.program.picture(place, scene);
+        // Tachyon's camera is left-handed.
+        let is_mirrored = self.program == Program::Tachyon;
         let difference = (self.program != ours && self.missing.is_none())
-            .then(|| mean_difference(&ours.picture(place, scene), &self.program.picture(place, scene)).ok());
+            .then(|| mean_difference(&ours.picture(place, scene), &theirs, is_mirrored).ok());
         ImageRow {
             scene: scene.to_owned(),
             program: self.program.name(),

@@ -65,13 +65,17 @@ impl Place {
     /// # Errors
     /// The compiler's last word.
     pub fn build_programs(&self) -> Result<(), String> {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let mut command = Command::new(cargo);
-        command.args(["build", "--release", "--package", "dotray", "--package", "xtask", "--bins"]);
-        // The folder two up from the programs is where this program itself was built.
-        if let Some(target) = self.programs.parent() {
-            command.env("CARGO_TARGET_DIR", target);
-        }
-        child::output(command.current_dir(&self.root)).map(|_| ())
+        // One by one: built together, packages share features of what they use, and this very program would be linked
+        // anew while it runs.
+        ["xtask", "dotray"].into_iter().try_for_each(|package| {
+            let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+            let mut command = Command::new(cargo);
+            command.args(["build", "--release", "--package", package, "--bins"]);
+            // The folder above the programs is where this program itself was built.
+            if let Some(target) = self.programs.parent() {
+                command.env("CARGO_TARGET_DIR", target);
+            }
+            child::output(command.current_dir(&self.root)).map(|_| ())
+        })
     }
 }
