@@ -62,7 +62,7 @@ pub fn measure(command: &[String], log: &Path, limit: f64) -> Result<Usage, Stri
 /// Runs a command and gives its standard output.
 ///
 /// # Errors
-/// The last line that it printed where it failed, or why it did not start.
+/// The last line that it printed of an error, else the last one, where it failed; or why it did not start.
 pub fn output(command: &mut Command) -> Result<String, String> {
     let name = command.get_program().to_string_lossy().into_owned();
     let output = command.stdin(Stdio::null()).output().map_err(|fault| format!("{name}: {fault}"))?;
@@ -70,8 +70,14 @@ pub fn output(command: &mut Command) -> Result<String, String> {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    let last = errors.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("failed without a word");
-    Err(format!("{name}: {}", last.trim()))
+    Err(format!("{name}: {}", last_word(&errors)))
+}
+
+/// The last line that speaks of an error, else the last one.
+fn last_word(errors: &str) -> &str {
+    let last =
+        |word: &str| errors.lines().rev().map(str::trim).find(|line| !line.is_empty() && line.contains(word));
+    last("rror").or_else(|| last("")).unwrap_or("failed without a word")
 }
 
 /// Whether a program can be started at all.
@@ -84,6 +90,7 @@ pub fn exists(program: &str) -> bool {
 #[cfg(all(test, unix))]
 mod tests {
     use super::exists;
+    use super::last_word;
     use super::output;
     use super::run_only_child;
     use std::process::Command;
@@ -93,6 +100,13 @@ mod tests {
         assert_eq!(output(Command::new("echo").arg("so")), Ok("so\n".to_owned()));
         assert!(output(&mut Command::new("false")).is_err());
         assert!(exists("sh") && !exists("no-such-program-here"));
+    }
+
+    #[test]
+    fn the_word_of_an_error_is_found() {
+        assert_eq!(last_word("RuntimeError: no file\n\nSee the manual.\n"), "RuntimeError: no file");
+        assert_eq!(last_word("one\n two \n\n"), "two");
+        assert_eq!(last_word("\n"), "failed without a word");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use crate::clock::process_cpu;
 use crate::scenes::AMBIENT;
 use crate::scenes::BACKGROUND;
+use crate::scenes::DIFFUSE;
 use crate::write;
 use dotray_geometry::Sphere;
 use dotray_geometry::Vec3;
@@ -14,6 +15,7 @@ use dotray_scene::files::Disk;
 use dotray_scene::model::Camera;
 use dotray_scene::model::Item;
 use dotray_scene::model::Light;
+use dotray_scene::model::Material;
 use dotray_scene::model::Placed;
 use dotray_scene::model::Scene;
 use dotray_scene::model::SceneFile;
@@ -44,7 +46,20 @@ fn scene(spheres: Vec<Sphere>, camera: &[f64; 13]) -> Scene {
         items: vec![Item::Run { kind: ShapeKind::Sphere, first: 0, count: spheres.len() as u32 }],
         ..SceneFile::default()
     };
-    file.spheres.materials = vec![-1; spheres.len()];
+    let (color, none) = (Vec3::splat(0.8), Vec3::ZERO);
+    let dull = Material {
+        ambient: color,
+        diffuse: color * DIFFUSE,
+        specular: none,
+        emissive: none,
+        k_specular: 0.0,
+        k_transmission: 0.0,
+        index_of_refraction: 1.0,
+        texture: None,
+        text: String::new(),
+    };
+    file.materials = placed(dull).into_iter().collect();
+    file.spheres.materials = vec![0; spheres.len()];
     file.spheres.shapes = spheres;
     Scene { files: vec![file] }
 }

@@ -9,6 +9,8 @@ use std::process::Command;
 /// Debian's names of what `apt-get` provides.
 const PACKAGES: [&str; 6] =
     ["povray", "povray-includes", "tachyon-bin-nox", "libtachyon-mt-0", "libembree-dev", "libtbb-dev"];
+/// A Vulkan without a graphics card, which OVITO asks for.
+const VULKAN: [&str; 2] = ["libvulkan1", "mesa-vulkan-drivers"];
 const EMBREE_WHEEL: &str = "embreex==4.4.0.post1";
 const OVITO_WHEEL: &str = "ovito==3.17.2";
 const BLENDER_WHEEL: &str = "bpy==5.2.3";
@@ -34,12 +36,9 @@ pub fn install(place: &Place) {
         Ok(_) => eprintln!("{what}: installed"),
         Err(why) => eprintln!("{what}: not available: {why}"),
     };
-    let apt = || output(Command::new("apt-get").args(["install", "--yes"]).args(PACKAGES));
-    told(
-        "Tachyon, POV-Ray, Embree 3",
-        if child::exists("apt-get") { apt() } else { Err("no apt-get".to_owned()) },
-    );
+    told("Tachyon, POV-Ray, Embree 3", apt(&PACKAGES));
     told("Embree 4", pip(place, "python3", "venv", EMBREE_WHEEL));
+    told("Vulkan for OVITO", apt(&VULKAN));
     told("OVITO", pip(place, "python3", "venv", OVITO_WHEEL));
     // Blender's wheels are for one version of Python each.
     let python = std::env::var("PYTHON313").unwrap_or_else(|_| "python3.13".to_owned());
@@ -47,6 +46,14 @@ pub fn install(place: &Place) {
         .map_err(|why| format!("needs Python 3.13 (or PYTHON313, its path): {why}"))
         .and_then(|_| pip(place, &python, "venv-bpy", BLENDER_WHEEL));
     told("Cycles", cycles);
+}
+
+/// Installs packages of the system.
+fn apt(packages: &[&str]) -> Result<String, String> {
+    if !child::exists("apt-get") {
+        return Err("no apt-get here".to_owned());
+    }
+    output(Command::new("apt-get").args(["install", "--yes"]).args(packages))
 }
 
 /// Installs a wheel into an environment of ours, which is made first where need be.

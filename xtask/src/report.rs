@@ -97,6 +97,20 @@ pub fn write_page(page: &Path, tables: &[(&'static str, String)]) -> Result<(), 
 mod tests {
     use super::Table;
     use super::replaced;
+    use crate::plan::Part;
+    use std::path::Path;
+
+    #[test]
+    fn the_page_has_a_place_for_every_part() {
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/bench.md");
+        let text = std::fs::read_to_string(page).expect("the page stands beside the crates");
+        for part in Part::ALL {
+            assert!(
+                replaced(&text, part.name(), "table").is_some_and(|new| new.contains("table")),
+                "{part:?}"
+            );
+        }
+    }
 
     #[test]
     fn tables_are_aligned() {

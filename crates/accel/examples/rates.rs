@@ -1,6 +1,7 @@
 //! Ray rates over spheres on one thread, for tuning: `rates [SPHERES.sph RAYS.rays…]` reads raw single-precision
 //! files (x y z r; origin tmin direction tmax; shadow rays where the name says so), `rates N…` makes N random ones
-//! with N·π·r² = 2 and random rays. The leaf test is in double precision, eight spheres at a time, and gives what one at
+//! with N·π·r² = 2 and random rays. The leaf test is in double precision, eight spheres at a time, and gives
+//! what one at
 //! a time would.
 
 use dotray_accel::simd::prelude::*;

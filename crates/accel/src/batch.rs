@@ -9,7 +9,8 @@ use crate::simd::Simd;
 ///
 /// The two leaf calls test items and answer with the new upper bound of t: the old one, the t of a nearer hit, or
 /// `f64::NEG_INFINITY` to end this ray's walk (an occlusion ray that is blocked). The walk guarantees that every item
-/// whose surface crosses the ray at some `t` in `[t_min, bound]` is shown at least once, where `bound` is what the calls
+/// whose surface crosses the ray at some `t` in `[t_min, bound]` is shown at least once, where `bound` is what
+/// the calls
 /// before answered; items may be shown more than once (octree and BSP), in any order.
 pub trait Batch {
     /// How many rays there are.

@@ -1,11 +1,13 @@
 //! Bounding boxes along the scene's own groups: whoever misses a group's box misses all in it.
 //!
-//! **Departure from the slides.** There a group's children are tested one after the other, which is no gain where a scene is one
+//! **Departure from the slides.** There a group's children are tested one after the other, which is no gain
+//! where a scene is one
 //! flat group. Here the children of a group (its items and the groups in it) are clustered into a small tree of
 //! their own, with the same eight-wide nodes as the BVH's; boxes never mix children of two groups. So the structure
 //! is the scene's, and the walk is the BVH's, near children first.
 //!
-//! A group without children has no box; a group of one child is that child. Groups may be nested as deep as memory allows:
+//! A group without children has no box; a group of one child is that child. Groups may be nested as deep
+//! as memory allows:
 //! nothing here recurses on them, and the walk's stack is as deep as the tree asks for.
 
 use crate::bvh::Builder;

@@ -1,7 +1,8 @@
 //! A binary space partition whose planes stand across the axes (a kd-tree), placed by the surface-area heuristic.
 //!
 //! The planes are chosen among evenly spaced ones, with a bonus for cutting off empty space, after Wald and Havran,
-//! "On building fast kd-trees for ray tracing" (2006); we depart from it in counting items in bins instead of sweeping over
+//! "On building fast kd-trees for ray tracing" (2006); we depart from it in counting items in bins instead of
+//! sweeping over
 //! sorted events, and in not clipping items to cells: boxes are all this crate knows.
 
 use crate::batch::Batch;

@@ -8,7 +8,8 @@
 //! roundings, which displace the plane by at most `3 * 2^-53 (|plane| + |origin|)`.
 //!
 //! **No NaN.** A direction's component of 0 (or next to it) is replaced by 2^-80 of the same sign: while the ray
-//! crosses the scene this moves it by less than `2^-80 * 4 (|origin| + |scene|)`, far below the slack, and the reciprocal
+//! crosses the scene this moves it by less than `2^-80 * 4 (|origin| + |scene|)`, far below the slack, and the
+//! reciprocal
 //! stays finite, so that no infinity meets a zero.
 
 use crate::query::Query;

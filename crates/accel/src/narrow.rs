@@ -23,7 +23,8 @@
 //! since |near| <= |near - o'| + |o'|. The term f is a displacement of the plane, and the pad
 //! `p = 8 u |o| + slack` exceeds it (3.1 u |o'| <= 3.2 u |o| + slack / 2), so planes are never displaced inward.
 //! The term e is relative: an entry is computed as at most (1 + 3.1 u) times the true one, an exit as at least
-//! (1 - 3.1 u) times. The exits' reciprocals and the bound are therefore made larger by 8 u, more than twice 3.1 u. All this
+//! (1 - 3.1 u) times. The exits' reciprocals and the bound are therefore made larger by 8 u, more than twice
+//! 3.1 u. All this
 //! holds for true values >= 0, which are all that count: entries are cut at 0, the start of the ray, and a box
 //! whose exit is truly negative lies behind it.
 //!

@@ -38,7 +38,8 @@ pub struct Octree {
 /// A cell: cut into eight, or a leaf.
 #[derive(Clone, Copy, Debug)]
 enum Node {
-    /// Its parts are the nodes `first .. first + 8`; bit 1 of an octant's number is the upper half of x, 2 of y, 4 of z.
+    /// Its parts are the nodes `first .. first + 8`; bit 1 of an octant's number is the upper half of x, 2 of
+    /// y, 4 of z.
     Cut { first: u32 },
     /// It lists items.
     Leaf(Leaf),

@@ -11,7 +11,8 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 pub fn watch() {
     let _ = ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            // A person who asks twice does not want to wait for the end of a stage; this thread has nothing to clean up.
+            // A person who asks twice does not want to wait for the end of a stage; this thread has nothing to
+            // clean up.
             std::process::exit(130);
         }
     });

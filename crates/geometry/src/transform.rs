@@ -183,7 +183,8 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(1000))]
 
         #[test]
-        fn points_come_back(entries in prop::array::uniform9(-2.0..2.0f64), translation in prop::array::uniform3(-5.0..5.0f64),
+        fn points_come_back(entries in prop::array::uniform9(-2.0..2.0f64),
+            translation in prop::array::uniform3(-5.0..5.0f64),
                             point in prop::array::uniform3(-5.0..5.0f64)) {
             let matrix = Mat3::from_cols_array(&entries);
             prop_assume!(matrix.determinant().abs() > 1e-2);

@@ -56,13 +56,16 @@ proptest! {
     #![proptest_config(common::config(20_000))]
 
     #[test]
-    fn cylinders_agree(center in point(10.0), radius in length(), height in length(), map in similarity(), aim in aim()) {
+    fn cylinders_agree(
+        center in point(10.0), radius in length(), height in length(), map in similarity(), aim in aim(),
+    ) {
         let cylinder = Cylinder::new(center, radius, height).unwrap();
         let to_world = Transform::new(map.0).unwrap();
         let scale = to_world.similarity_scale().unwrap();
         prop_assert!((scale / map.1 - 1.0).abs() < 1e-14);
         let oriented = OrientedCylinder::from_object(&cylinder, &map.0, scale);
-        check(&Shape::Cylinder(cylinder), &to_world, aim, |ray| oriented.crossings(ray), |ray, hit| oriented.normal(ray, hit))?;
+        let shape = Shape::Cylinder(cylinder);
+        check(&shape, &to_world, aim, |ray| oriented.crossings(ray), |ray, hit| oriented.normal(ray, hit))?;
     }
 
     #[test]

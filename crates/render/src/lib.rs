@@ -5,11 +5,11 @@
 //!
 //! The order of the `mod` lines is the floor order: a module uses only modules listed above it.
 
+pub mod error;
+
 pub mod options;
 
 pub mod stats;
-
-pub mod error;
 
 pub mod camera;
 
@@ -22,6 +22,8 @@ pub mod texture;
 pub mod light;
 
 mod cull;
+
+mod form;
 
 pub mod shapes;
 

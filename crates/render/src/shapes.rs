@@ -6,9 +6,12 @@
 use crate::cull;
 use crate::cull::Cull;
 use crate::cull::Spine;
+use crate::form::Form;
+use crate::form::Framed;
+use crate::form::Slot;
+use crate::form::axis_aligned;
 use dotray_accel::packet::Packet;
 use dotray_accel::simd::Simd;
-use dotray_geometry::Aabb;
 use dotray_geometry::Cone;
 use dotray_geometry::Crossings;
 use dotray_geometry::Cuboid;
@@ -25,67 +28,8 @@ use dotray_geometry::shape::OrientedCone;
 use dotray_geometry::shape::OrientedCylinder;
 use dotray_geometry::shape::TriangleRay;
 use dotray_scene::model::SceneFile;
+use dotray_scene::model::ShapeKind;
 use dotray_scene::resolved::Run;
-
-/// In which form a shape was baked. Framed forms are tested in object coordinates with their run's transform.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// A sphere under a similarity.
-    Sphere,
-    /// A box that is axis-aligned in the world.
-    Cuboid,
-    /// A cylinder under a similarity.
-    Cylinder,
-    /// A cone under a similarity.
-    Cone,
-    /// A triangle: its corners in the world.
-    Triangle,
-    /// An ellipsoid.
-    FramedSphere,
-    /// A parallelepiped.
-    FramedCuboid,
-    /// A cylinder under any other map.
-    FramedCylinder,
-    /// A cone under any other map.
-    FramedCone,
-}
-
-impl Form {
-    const ALL: [Self; 9] = [
-        Self::Sphere,
-        Self::Cuboid,
-        Self::Cylinder,
-        Self::Cone,
-        Self::Triangle,
-        Self::FramedSphere,
-        Self::FramedCuboid,
-        Self::FramedCylinder,
-        Self::FramedCone,
-    ];
-}
-
-/// A form and an index into its array, in 32 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Slot(u32);
-
-impl Slot {
-    const INDEX_BITS: u32 = 28;
-
-    fn new(form: Form, index: usize) -> Self {
-        debug_assert!(index < 1 << Self::INDEX_BITS);
-        Self((form as u32) << Self::INDEX_BITS | index as u32)
-    }
-
-    #[inline(always)]
-    fn form(self) -> Form {
-        Form::ALL[(self.0 >> Self::INDEX_BITS) as usize]
-    }
-
-    #[inline(always)]
-    fn index(self) -> usize {
-        (self.0 & ((1 << Self::INDEX_BITS) - 1)) as usize
-    }
-}
 
 /// The shape at a point hit, as shading wants it: in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,20 +40,6 @@ pub struct WorldSurface {
     pub geometric_normal: Vec3,
     /// The same point in the shape's coordinates, before its groups; its shading normal there, of length 1.
     pub in_object: Surface,
-}
-
-/// A shape that is tested in object coordinates, with what rules it out before.
-#[derive(Clone, Copy, Debug)]
-struct Framed<T> {
-    shape: T,
-    bounds: Aabb,
-    spine: Option<Spine>,
-}
-
-impl<T> Framed<T> {
-    fn new(shape: T, bounds: Aabb, spine: Option<Spine>) -> Self {
-        Self { shape, bounds, spine }
-    }
 }
 
 /// All shapes of a scene.
@@ -378,7 +308,8 @@ impl Shapes {
 
     /// The surface where `ray` met the shape at `position`.
     pub fn surface(&self, position: u32, ray: &Ray, hit: Hit) -> WorldSurface {
-        let (_, run, shape) = written_shape(&self.runs, &self.files, self.number(position));
+        let run = self.run(position);
+        let shape = self.in_object(position, run);
         let frame = &self.frames[run.frame as usize];
         if let Shape::Triangle(triangle) = &shape {
             return self.triangle_surface(position, triangle, frame, ray);
@@ -393,6 +324,48 @@ impl Shapes {
             point: frame.world_from_object.transform_point3(in_object.point),
             geometric_normal: frame.world_normal(in_object.geometric_normal),
             in_object,
+        }
+    }
+
+    /// The shape in object coordinates: as baked where the world is its object space, else as written.
+    fn in_object(&self, position: u32, run: &Run) -> Shape {
+        let slot = self.slots[position as usize];
+        match slot.form() {
+            Form::Sphere if run.frame == 0 => Shape::Sphere(self.spheres[slot.index()]),
+            Form::Cuboid if run.frame == 0 => Shape::Cuboid(self.cuboids[slot.index()]),
+            Form::Sphere
+            | Form::Cuboid
+            | Form::Cylinder
+            | Form::Cone
+            | Form::Triangle
+            | Form::FramedSphere
+            | Form::FramedCuboid
+            | Form::FramedCylinder
+            | Form::FramedCone => written_shape(&self.runs, &self.files, self.number(position)).2,
+        }
+    }
+
+    /// Lets go of the lists as written that nobody asks for any more, once every shape has been pushed: all
+    /// materials, and the spheres and boxes that stand in no group, whose baked form is the same.
+    pub fn finish(&mut self) {
+        for (index, file) in self.files.iter_mut().enumerate() {
+            let in_world = |kind: ShapeKind| {
+                let mut runs =
+                    self.runs.iter().filter(|run| run.file.0 as usize == index && run.kind == kind);
+                runs.all(|run| run.frame == 0)
+            };
+            if in_world(ShapeKind::Sphere) {
+                file.spheres.shapes = Vec::new();
+            }
+            if in_world(ShapeKind::Cuboid) {
+                file.cuboids.shapes = Vec::new();
+            }
+            file.spheres.materials = Vec::new();
+            file.cuboids.materials = Vec::new();
+            file.cylinders.materials = Vec::new();
+            file.cones.materials = Vec::new();
+            file.triangles.materials = Vec::new();
+            file.indexed_triangles.materials = Vec::new();
         }
     }
 
@@ -471,16 +444,4 @@ fn sweep_with<S: Simd>(
             visit(packet, group, lane);
         }
     }
-}
-
-/// The box as a box of the world, where the frame only moves and stretches along the axes.
-fn axis_aligned(cuboid: &Cuboid, frame: &Transform) -> Option<Cuboid> {
-    let m = &frame.world_from_object.matrix3;
-    let diagonal = Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z);
-    let off_diagonal = [m.x_axis.y, m.x_axis.z, m.y_axis.x, m.y_axis.z, m.z_axis.x, m.z_axis.y];
-    if off_diagonal.iter().any(|&v| v != 0.0) || !diagonal.cmpgt(Vec3::ZERO).all() {
-        return None;
-    }
-    let center = frame.world_from_object.transform_point3(cuboid.center());
-    Cuboid::new(center, cuboid.size() * diagonal).ok()
 }

@@ -112,6 +112,7 @@ impl World {
             Some(order) => order.iter().for_each(|&number| shapes.push(number, material)),
             None => (0..resolved.shape_count).for_each(|number| shapes.push(number, material)),
         }
+        shapes.finish();
         seconds.push(("bake", start.elapsed().as_secs_f64()));
 
         let size = if bounds.is_empty() { 1.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };

@@ -100,7 +100,8 @@ fn layout_means_nothing() {
     let compact = scene(
         "#material 1 1 1 1 1 1 1 1 1 0 0 0 0 0 1 -1 !a b! #shape_sphere 0 1 2 3 4 #shape_sphere 0 5 6 7 8",
     );
-    let spread = "\u{feff}// begin\r\n#material\r\n 1 +1 1. 1e0 /* four */ 1 1\t1 1 1 0 0 0 .0 -0 1\n-1 !a b!#shape_sphere 0 1 2\n\n\n3 // three\n 4\n#shape_sphere\t0\u{c}5\u{b}6 7 8/**/";
+    let spread = "\u{feff}// begin\r\n#material\r\n 1 +1 1. 1e0 /* four */ 1 1\t1 1 1 0 0 0 .0 -0 1\n-1 \
+        !a b!#shape_sphere 0 1 2\n\n\n3 // three\n 4\n#shape_sphere\t0\u{c}5\u{b}6 7 8/**/";
     // The last number and the comment are one word, as a comment may only stand where a word may.
     assert!(read(spread).scene.is_none());
     let spread = scene(&spread.replace("8/**/", "8 /**/"));

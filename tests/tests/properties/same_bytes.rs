@@ -102,7 +102,7 @@ fn a_difference_of_one_bit_is_seen() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4000, max_shrink_iters: 400, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 150, max_shrink_iters: 400, ..ProptestConfig::default() })]
 
     #[test]
     fn random_scenes_are_the_same_with_every_accelerator(text in random::scene(), adaptive in any::<bool>()) {

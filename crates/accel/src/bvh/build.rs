@@ -5,7 +5,8 @@
 //! bounding volume hierarchies", 2007; the greedy widening is Embree's. We make wide nodes at once instead of folding
 //! a binary tree, which would take another 32 bytes an item.)
 //!
-//! **Memory.** 32 bytes an item for its reference while the tree grows, besides the order (4 bytes) and the tree itself; nothing is
+//! **Memory.** 32 bytes an item for its reference while the tree grows, besides the order (4 bytes) and the
+//! tree itself; nothing is
 //! allocated per item. **Depth.** Below [`FREE_DEPTH`] levels pieces are halved by count, so the tree ends at most
 //! 10 levels further down, whatever the items: [`MAX_STACK`] follows. **Order.** Ranges are cut by their contents only,
 //! and pieces that grow on several threads are put together in their order: threads leave no trace.

@@ -12,7 +12,8 @@ use std::fmt::Write;
 const INTRODUCTION: &str = "\
 # The `.ray` format
 
-<!-- Made from crates/scene/src/directive/table.rs; `UPDATE=1 cargo test -p dotray-scene --test format_page` rewrites it. -->
+<!-- Made from crates/scene/src/directive/table.rs;
+`UPDATE=1 cargo test -p dotray-scene --test format_page` rewrites it. -->
 
 A `.ray` file describes a scene for a ray tracer: a camera, lights, materials, and shapes in nested groups.
 

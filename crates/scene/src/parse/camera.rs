@@ -13,7 +13,8 @@ use std::f64::consts::FRAC_PI_2;
 use std::f64::consts::PI;
 
 impl Parser<'_> {
-    /// Camera, lights and colours of an included file do not count, so what is wrong with their values does not, either.
+    /// Camera, lights and colours of an included file do not count, so what is wrong with their values does
+    /// not, either.
     fn view_counts(&self) -> bool {
         self.file == FileId(0)
     }
