@@ -106,7 +106,10 @@ impl Frame {
         let low = ((bounds.min - self.center) * self.scale).to_array();
         let high = ((bounds.max - self.center) * self.scale).to_array();
         if self.slack.outward {
-            NarrowBox { low: low.map(round_down), high: high.map(round_up) }
+            NarrowBox {
+                low: [round_down(low[0]), round_down(low[1]), round_down(low[2])],
+                high: [round_up(high[0]), round_up(high[1]), round_up(high[2])],
+            }
         } else {
             NarrowBox { low: low.map(|x| x as f32), high: high.map(|x| x as f32) }
         }
@@ -120,16 +123,18 @@ impl Frame {
     /// A point of the world, rounded to nearest.
     #[inline(always)]
     pub fn point(&self, point: Vec3) -> [f32; 3] {
-        ((point - self.center) * self.scale).to_array().map(|x| x as f32)
+        let point = (point - self.center) * self.scale;
+        [point.x as f32, point.y as f32, point.z as f32]
     }
 
     /// Where a ray enters the scene, rounded to nearest.
     #[inline(always)]
     pub fn point_on(&self, ray: &ClippedRay) -> [f32; 3] {
         let center = self.center.to_array();
-        [0, 1, 2].map(|axis| {
+        let place = |axis: usize| {
             ((ray.origin[axis] - center[axis] + ray.start * ray.direction[axis]) * self.scale) as f32
-        })
+        };
+        [place(0), place(1), place(2)]
     }
 
     /// The factor that makes exits larger.

@@ -33,8 +33,11 @@ impl Block {
         let mut pixels = Vec::with_capacity(self.width as usize * self.height as usize);
         for corner in self.bricks([16, 4]) {
             for brick in corner.bricks([4, 2]) {
-                let Self { x, y, width, height } = brick;
-                pixels.extend((y..y + height).flat_map(|j| (x..x + width).map(move |i| (i, j))));
+                for j in brick.y..brick.y + brick.height {
+                    for i in brick.x..brick.x + brick.width {
+                        pixels.push((i, j));
+                    }
+                }
             }
         }
         pixels

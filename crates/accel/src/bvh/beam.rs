@@ -8,6 +8,7 @@
 use crate::batch::Batch;
 use crate::bvh::wide::Child;
 use crate::bvh::wide::Tree;
+use crate::bvh::wide::WIDTH;
 use crate::clip::ClippedRay;
 use crate::packet::Beam;
 use crate::packet::Packet;
@@ -21,10 +22,15 @@ struct Waiting {
     active: u32,
 }
 
+impl Waiting {
+    /// What fills the stack above its top.
+    const NOBODY: Self = Self { enter: 0.0, child: Child::ABSENT, active: 0 };
+}
+
 /// Walks every ray of the batch through the tree, in packets of rays with equal signs.
 #[inline(always)]
 pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, batch: &mut B) {
-    let mut stack = Vec::new();
+    let mut stack = vec![Waiting::NOBODY; tree.stack + WIDTH + 1];
     let mut packet = Packet::new(&tree.frame);
     let mut octants: [Vec<u32>; 8] = Default::default();
     for i in 0..batch.len() {
@@ -53,7 +59,7 @@ pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, batch: &mut B) {
 fn walk_packet<S: Simd, B: Batch>(
     simd: S,
     tree: &Tree,
-    stack: &mut Vec<Waiting>,
+    stack: &mut [Waiting],
     packet: &mut Packet,
     batch: &mut B,
 ) {
@@ -75,16 +81,18 @@ fn walk_packet<S: Simd, B: Batch>(
 fn descend<S: Simd, B: Batch>(
     simd: S,
     tree: &Tree,
-    stack: &mut Vec<Waiting>,
+    stack: &mut [Waiting],
     packet: &mut Packet,
     batch: &mut B,
 ) -> u64 {
     let beam = Beam::around(packet);
     let (mut alive, mut bound) = packet.alive(simd);
     let mut tests = packet.count() as u64;
-    stack.clear();
-    stack.push(Waiting { enter: 0.0, child: tree.root, active: alive });
-    while let Some(Waiting { enter, child, active }) = stack.pop() {
+    stack[0] = Waiting { enter: 0.0, child: tree.root, active: alive };
+    let mut top = 1;
+    while top > 0 {
+        top -= 1;
+        let Waiting { enter, child, active } = stack[top];
         let active = active & alive;
         if active == 0 || enter > bound {
             continue;
@@ -100,7 +108,7 @@ fn descend<S: Simd, B: Batch>(
         let node = &tree.nodes[child.0 as usize];
         let (mut mask, enter) = beam.meets(simd, &node.planes, bound);
         tests += 8;
-        let bottom = stack.len();
+        let bottom = top;
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 7;
             mask &= mask - 1;
@@ -113,10 +121,21 @@ fn descend<S: Simd, B: Batch>(
             let active = packet.meets(simd, active, near, far);
             if active != 0 {
                 let waiting = Waiting { enter: enter[lane], child: node.children[lane], active };
-                let place = stack[bottom..].partition_point(|other| other.enter > waiting.enter);
-                stack.insert(bottom + place, waiting);
+                insert(stack, bottom, top, waiting);
+                top += 1;
             }
         }
     }
     tests
+}
+
+/// Inserts into `stack[bottom..top]`, which descends.
+#[inline(always)]
+fn insert(stack: &mut [Waiting], bottom: usize, top: usize, new: Waiting) {
+    let mut place = top;
+    while place > bottom && stack[place - 1].enter < new.enter {
+        stack[place] = stack[place - 1];
+        place -= 1;
+    }
+    stack[place] = new;
 }

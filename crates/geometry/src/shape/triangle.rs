@@ -216,13 +216,19 @@ impl TriangleRay {
 
     #[inline]
     fn pass(&self, vertices: &[Vec3; 3]) -> Passage {
-        let [a, b, c] = vertices.map(|vertex| self.main_axis.to_last(vertex - self.origin));
+        // Written out: `array::map` is a loop of the library that is not always inlined.
+        let seen = |vertex: Vec3| self.main_axis.to_last(vertex - self.origin);
+        let (a, b, c) = (seen(vertices[0]), seen(vertices[1]), seen(vertices[2]));
         let sheared = |p: Vec3| Vec2::new(p.x - self.shear_x * p.z, p.y - self.shear_y * p.z);
         let (a2, b2, c2) = (sheared(a), sheared(b), sheared(c));
         let u = c2.x * b2.y - c2.y * b2.x;
         let v = a2.x * c2.y - a2.y * c2.x;
         let w = b2.x * a2.y - b2.y * a2.x;
-        Passage { products: [u, v, w], sum: u + v + w, depths: [a.z, b.z, c.z].map(|z| z * self.per_z) }
+        Passage {
+            products: [u, v, w],
+            sum: u + v + w,
+            depths: [a.z * self.per_z, b.z * self.per_z, c.z * self.per_z],
+        }
     }
 }
 
