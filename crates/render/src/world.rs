@@ -38,7 +38,6 @@ pub struct World {
     pub(crate) shapes: Shapes,
     pub(crate) accelerator: Accelerator,
     pub(crate) ray_eps: f64,
-    bounds: Aabb,
     seconds: Vec<(&'static str, f64)>,
 }
 
@@ -98,16 +97,14 @@ impl World {
             Some(Ok(pool)) => pool.install(build),
             Some(Err(_)) | None => build(),
         };
-        let bounds = (0..boxes.count).fold(Aabb::EMPTY, |all, item| all.union(boxes.bounds(item)));
+        let bounds = built.accelerator.bounds();
         seconds.push(("build", start.elapsed().as_secs_f64()));
 
         let start = Instant::now();
         let default_material = resolved.materials.len() as u32 - 1;
         let mut shapes = Shapes::new(resolved.runs, resolved.frames, resolved.files);
         shapes.reserve(resolved.shape_count as usize);
-        let material = |run: &Run, written: i32| {
-            u32::try_from(written).map_or(default_material, |number| run.material_base + number)
-        };
+        let material = |run: &Run, written: i32| run.material(written).unwrap_or(default_material);
         match &built.order {
             Some(order) => order.iter().for_each(|&number| shapes.push(number, material)),
             None => (0..resolved.shape_count).for_each(|number| shapes.push(number, material)),
@@ -126,7 +123,6 @@ impl World {
             shapes,
             accelerator: built.accelerator,
             ray_eps: RELATIVE_RAY_EPS * size,
-            bounds,
             seconds,
         })
     }
@@ -138,7 +134,7 @@ impl World {
 
     /// The box around all shapes; empty without any.
     pub fn bounds(&self) -> Aabb {
-        self.bounds
+        self.accelerator.bounds()
     }
 
     /// The smallest t of a hit that counts.

@@ -104,13 +104,19 @@ pub struct Resolved {
     pub files: Vec<SceneFile>,
 }
 
+impl Run {
+    /// The number in [`Resolved::materials`] of a shape's material as its file numbers it; `None` for -1, the default
+    /// material.
+    #[inline]
+    pub fn material(&self, written: i32) -> Option<u32> {
+        u32::try_from(written).ok().map(|number| self.material_base + number)
+    }
+}
+
 impl Resolved {
     /// The number in [`Resolved::materials`] of a shape's material as its file numbers it (-1: the default).
     #[inline]
     pub fn material_index(&self, run: &Run, written: i32) -> u32 {
-        match u32::try_from(written) {
-            Ok(number) => run.material_base + number,
-            Err(_) => self.materials.len() as u32 - 1,
-        }
+        run.material(written).unwrap_or(self.materials.len() as u32 - 1)
     }
 }
