@@ -22,8 +22,6 @@ mod picture;
 
 mod rays;
 
-mod caster;
-
 mod ray_sets;
 
 pub mod rates;

@@ -1,13 +1,16 @@
 //! `ray_rates`: dotray's rates for the rays of a file, in the form that the Embree program uses, too.
 
-use crate::caster::Caster;
-use crate::caster::Found;
 use crate::clock::process_cpu;
 use crate::clock::thread_cpu;
 use crate::ray_sets;
 use crate::rays;
+use crate::rays::Batch;
 use crate::rays::RawRay;
+use dotray_accel::simd::level;
+use dotray_accel::simd::level_name;
 use dotray_geometry::Vec3;
+use dotray_render::Caster;
+use dotray_render::PrepareOptions;
 use dotray_scene::Resolved;
 use dotray_scene::files::Disk;
 use dotray_scene::load::LoadOptions;
@@ -32,37 +35,29 @@ fn fault(diagnostics: &[dotray_scene::Diagnostic]) -> &str {
     diagnostics.first().map_or("has errors", |diagnostic| &diagnostic.message)
 }
 
-/// Builds on so many threads: the caster, CPU seconds, wall seconds.
-fn build(resolved: &Resolved, threads: usize) -> Result<(Caster, f64, f64), String> {
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|fault| fault.to_string())?;
-    let unbuilt = Caster::bake(resolved);
+/// Builds on so many threads: the caster, CPU seconds, wall seconds. The tree is what is timed, and the baking of the
+/// shapes, which peers have done when they are handed their arrays.
+fn build(resolved: Resolved, threads: usize) -> (Caster, f64, f64) {
+    let options = PrepareOptions { threads: Some(threads), ..PrepareOptions::default() };
     let (cpu, wall) = (process_cpu(), Instant::now());
-    let caster = pool.install(|| unbuilt.build());
-    Ok((caster, process_cpu() - cpu, wall.elapsed().as_secs_f64()))
+    let caster = Caster::build(resolved, &options);
+    (caster, process_cpu() - cpu, wall.elapsed().as_secs_f64())
 }
 
 /// Traces once: seconds, hits, sum of t.
-fn trace(
-    caster: &Caster,
-    rays: &[RawRay],
-    occlusion: bool,
-    found: &mut Vec<Option<Found>>,
-) -> (f64, u64, f64) {
+fn trace(caster: &Caster, rays: &[RawRay], set: &str, batch: &mut Batch) -> (f64, u64, f64) {
     let start = thread_cpu();
     let (mut hits, mut sum) = (0, 0.0);
-    let mut queries = Vec::with_capacity(CHUNK);
+    let together = rays::is_coherent(set);
     for chunk in rays.chunks(CHUNK) {
-        queries.clear();
-        queries.extend(chunk.iter().map(rays::query));
-        if occlusion {
-            caster.occluded(&queries, found);
-            hits += found.iter().flatten().count() as u64;
+        batch.set(chunk);
+        if rays::is_occlusion(set) {
+            let found = caster.occluded(&batch.queries(), together);
+            hits += found.iter().filter(|&&found| found).count() as u64;
         } else {
-            caster.nearest(&queries, found);
-            for found in found.iter().flatten() {
+            for found in caster.nearest(&batch.queries(), together).iter().flatten() {
                 hits += 1;
-                sum += found.t();
+                sum += found.hit.t;
             }
         }
     }
@@ -71,14 +66,15 @@ fn trace(
 
 fn make(scene: &str, prefix: &str) -> Result<(), String> {
     let resolved = open(scene)?;
-    let (caster, _, _) = build(&resolved, std::thread::available_parallelism().map_or(1, usize::from))?;
+    let camera = resolved.camera;
     let light = resolved.lights.iter().find_map(|light| match light {
         Light::Point { position, .. } | Light::Spot { position, .. } | Light::Area { position, .. } => {
             Some(*position)
         }
         Light::Directional { .. } => None,
     });
-    let sets = ray_sets::make(&caster, &resolved.camera, light.unwrap_or(Vec3::new(3.0, 5.0, 4.0)));
+    let (caster, _, _) = build(resolved, std::thread::available_parallelism().map_or(1, usize::from));
+    let sets = ray_sets::make(&caster, &camera, light.unwrap_or(Vec3::new(3.0, 5.0, 4.0)));
     for (name, set) in rays::SETS.into_iter().zip(&sets.0) {
         rays::write(Path::new(&format!("{prefix}.{name}.rays")), set)?;
     }
@@ -87,17 +83,17 @@ fn make(scene: &str, prefix: &str) -> Result<(), String> {
 
 fn rates(scene: &str, rounds: usize, threads: usize, files: &[String]) -> Result<(), String> {
     let resolved = open(scene)?;
-    let (caster, cpu, wall) = build(&resolved, threads)?;
-    drop(resolved);
-    println!("BUILD,dotray ({}),{},{cpu:.4},{wall:.4},{}", Caster::simd(), caster.shapes(), caster.memory());
-    let mut found = Vec::with_capacity(CHUNK);
+    let (caster, cpu, wall) = build(resolved, threads);
+    let simd = level_name(level());
+    println!("BUILD,dotray ({simd}),{},{cpu:.4},{wall:.4},{}", caster.shape_count(), caster.memory());
+    let mut batch = Batch::default();
     for file in files {
         let set = file.rsplit('.').nth(1).unwrap_or("rays");
         let rays = rays::read(Path::new(file))?;
         let mut seconds = Vec::new();
         let (mut hits, mut sum) = (0, 0.0);
         for _ in 0..rounds.max(1) {
-            let (time, round_hits, round_sum) = trace(&caster, &rays, rays::is_occlusion(set), &mut found);
+            let (time, round_hits, round_sum) = trace(&caster, &rays, set, &mut batch);
             seconds.push(time);
             (hits, sum) = (round_hits, round_sum);
         }

@@ -1,15 +1,14 @@
 //! The four sets of rays of a scene: what a picture asks, from its most coherent rays to its least.
 
-use crate::caster::Caster;
-use crate::caster::Found;
 use crate::random::Random;
+use crate::rays::Batch;
 use crate::rays::RawRay;
-use crate::rays::query;
 use crate::rays::stored;
 use crate::write::HEIGHT;
 use crate::write::WIDTH;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
+use dotray_render::Caster;
 use dotray_scene::model::Camera;
 
 /// The edge of the tiles in which eye rays are stored.
@@ -58,15 +57,15 @@ pub fn make(caster: &Caster, camera: &Camera, light: Vec3) -> Sets {
     let mut random = Random::new(88_172_645_463_325_252);
     let primary: Vec<_> = eye_rays(camera).iter().map(|ray| stored(ray, 0.0, f64::INFINITY)).collect();
     let (mut shadow, mut diffuse) = (Vec::new(), Vec::new());
-    let mut found: Vec<Option<Found>> = Vec::new();
+    let mut batch = Batch::default();
     for chunk in primary.chunks(1024) {
         // The rays as the file has them, so that what leaves their hits belongs to them.
-        let queries: Vec<_> = chunk.iter().map(query).collect();
-        caster.nearest(&queries, &mut found);
-        for (query, found) in queries.iter().zip(&found) {
+        batch.set(chunk);
+        let queries = batch.queries();
+        for (ray, found) in queries.rays.iter().zip(caster.nearest(&queries, true)) {
             let Some(found) = found else { continue };
-            let normal = caster.normal(&query.ray, found);
-            let (to_light, bounced) = leaving(&query.ray, normal, found.t(), light, &mut random);
+            let normal = caster.surface(ray, &found).geometric_normal;
+            let (to_light, bounced) = leaving(ray, normal, found.hit.t, light, &mut random);
             shadow.extend(to_light);
             diffuse.push(bounced);
         }

@@ -1,6 +1,6 @@
 //! Ray files: eight float32 a ray, which all programs trace.
 
-use dotray_accel::Query;
+use dotray_accel::Queries;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
 use std::fs::File;
@@ -19,18 +19,44 @@ pub fn is_occlusion(set: &str) -> bool {
     set == "shadow"
 }
 
+/// Whether successive rays of a set start and run alike.
+pub fn is_coherent(set: &str) -> bool {
+    matches!(set, "primary" | "shadow")
+}
+
 /// A ray as it is stored. A greatest t beyond single precision's range stands for none.
 pub fn stored(ray: &Ray, t_min: f64, t_max: f64) -> RawRay {
     let [o, d] = [ray.origin, ray.direction].map(|v| v.to_array().map(|x| x as f32));
     [o[0], o[1], o[2], t_min as f32, d[0], d[1], d[2], t_max.min(1e30) as f32]
 }
 
-/// The stored ray in double precision, its direction of length 1 again.
-#[inline]
-pub fn query(raw: &RawRay) -> Query {
-    let n = raw.map(f64::from);
-    let direction = Vec3::new(n[4], n[5], n[6]).normalize();
-    Query { ray: Ray::new(Vec3::new(n[0], n[1], n[2]), direction), t_min: n[3], t_max: n[7] }
+/// Stored rays in double precision.
+#[derive(Debug, Default)]
+pub struct Batch {
+    rays: Vec<Ray>,
+    t_min: Vec<f64>,
+    t_max: Vec<f64>,
+}
+
+impl Batch {
+    /// Takes these rays in the place of those before; their directions have length 1 again.
+    pub fn set(&mut self, raw: &[RawRay]) {
+        self.rays.clear();
+        self.t_min.clear();
+        self.t_max.clear();
+        for raw in raw {
+            let n = raw.map(f64::from);
+            let direction = Vec3::new(n[4], n[5], n[6]).normalize();
+            self.rays.push(Ray::new(Vec3::new(n[0], n[1], n[2]), direction));
+            self.t_min.push(n[3]);
+            self.t_max.push(n[7]);
+        }
+    }
+
+    /// The rays, as a caster takes them.
+    pub fn queries(&self) -> Queries<'_> {
+        Queries { rays: &self.rays, t_min: &self.t_min, t_max: &self.t_max }
+    }
 }
 
 /// Writes a set.
@@ -59,7 +85,7 @@ pub fn read(path: &Path) -> Result<Vec<RawRay>, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::query;
+    use super::Batch;
     use super::read;
     use super::stored;
     use super::write;
@@ -74,7 +100,9 @@ mod tests {
         write(&path, &rays).expect("the folder of temporary files can be written");
         assert_eq!(read(&path), Ok(rays.to_vec()));
         std::fs::remove_file(&path).expect("it is ours");
-        let again = query(&rays[0]);
+        let mut batch = Batch::default();
+        batch.set(&rays);
+        let again = batch.queries().query(0);
         assert!((again.ray.direction - ray.direction).length() < 1e-7);
         assert_eq!((again.ray.origin, again.t_min, again.t_max), (ray.origin, 0.0, 5.0));
     }

@@ -18,7 +18,7 @@ use crate::input::MAX_ITEMS;
 use crate::input::Settings;
 use crate::narrow::Frame;
 use crate::octree::Octree;
-use crate::simd::Fallback;
+use crate::query::Queries;
 use crate::simd::Level;
 use crate::simd::dispatch;
 use crate::stats::Defect;
@@ -101,6 +101,12 @@ impl Accelerator {
         self.bounds
     }
 
+    /// Whether its walks call [`Batch::leaf_block`] and [`Batch::leaf_packet`], with rays in the single precision of
+    /// [`Frame::around`] its bounds.
+    pub fn shows_blocks(&self) -> bool {
+        matches!(self.structure, Structure::Tree(_))
+    }
+
     /// The bytes it holds.
     pub fn memory(&self) -> usize {
         size_of::<Self>()
@@ -143,10 +149,9 @@ impl Accelerator {
 
     /// Walks every ray of the batch. `level` says which instructions kernels may use; the calls to the batch are the
     /// same in effect for every level and kind.
-    pub fn walk<B: Batch>(&self, level: Level, batch: &mut B) {
+    pub fn walk(&self, level: Level, queries: &Queries<'_>, batch: &mut dyn Batch) {
         match &self.structure {
-            // These three and what they call have no vector code, so one copy serves every level.
-            Structure::Brute => brute::walk(Fallback::new(), self.items, batch),
+            Structure::Brute => brute::walk(self.items, queries, batch),
             Structure::Tree(tree) => {
                 // Only scenes with very deeply nested groups ask for more than fits the fixed stack.
                 let (mut fixed, mut grown) = ([0; MAX_STACK + WIDTH], Vec::new());
@@ -156,10 +161,10 @@ impl Accelerator {
                     grown.resize(tree.stack + WIDTH, 0);
                     &mut grown[..]
                 };
-                dispatch!(level, simd => bvh::walk::walk(simd, tree, stack, batch));
+                dispatch!(level, simd => bvh::walk::walk(simd, tree, stack, queries, batch));
             }
-            Structure::Octree(octree) => octree.walk(Fallback::new(), batch),
-            Structure::Bsp(bsp) => bsp.walk(Fallback::new(), batch),
+            Structure::Octree(octree) => octree.walk(queries, batch),
+            Structure::Bsp(bsp) => bsp.walk(queries, batch),
         }
     }
 }
@@ -167,13 +172,13 @@ impl Accelerator {
 impl Accelerator {
     /// The same as [`Accelerator::walk`], for rays that start and run alike (neighbours from the eye, or from a
     /// surface to one light): they share the reading of nodes and leaves. Any rays give the same answers, only slower.
-    pub fn walk_together<B: Batch>(&self, level: Level, batch: &mut B) {
+    pub fn walk_together(&self, level: Level, queries: &Queries<'_>, batch: &mut dyn Batch) {
         match &self.structure {
-            Structure::Tree(tree) if batch.len() > 1 => {
-                dispatch!(level, simd => bvh::beam::walk(simd, tree, batch));
+            Structure::Tree(tree) if queries.len() > 1 => {
+                dispatch!(level, simd => bvh::beam::walk(simd, tree, queries, batch));
             }
             Structure::Tree(_) | Structure::Brute | Structure::Octree(_) | Structure::Bsp(_) => {
-                self.walk(level, batch);
+                self.walk(level, queries, batch);
             }
         }
     }

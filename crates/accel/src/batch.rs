@@ -1,42 +1,37 @@
 //! Whom a walk calls.
 
+use crate::narrow::NarrowRay;
 use crate::packet::LANES;
 use crate::packet::Packet;
-use crate::query::Query;
-use crate::simd::Simd;
 
-/// Several rays that travel together, and what happens at the leaves.
+/// What happens at the leaves to the rays of a batch.
 ///
-/// The two leaf calls test items and answer with the new upper bound of t: the old one, the t of a nearer hit, or
+/// The leaf calls test items and answer with the new upper bound of t: the old one, the t of a nearer hit, or
 /// `f64::NEG_INFINITY` to end this ray's walk (an occlusion ray that is blocked). The walk guarantees that every item
 /// whose surface crosses the ray at some `t` in `[t_min, bound]` is shown at least once, where `bound` is what
 /// the calls
 /// before answered; items may be shown more than once (octree and BSP), in any order.
+///
+/// Walks call through `dyn Batch`: one indirect call a leaf costs nothing that could be measured, and the walk is
+/// compiled once a SIMD level instead of once a level and kind of question.
 pub trait Batch {
-    /// How many rays there are.
-    fn len(&self) -> usize;
-
-    /// Ray number `i`.
-    fn query(&self, i: usize) -> Query;
-
-    /// Tests the items at positions `first .. first + count` (of the accelerator's own order, [`crate::Built::order`]).
-    fn leaf_range<S: Simd>(&mut self, simd: S, i: usize, first: u32, count: u32, t_max: f64) -> f64;
+    /// Tests the items at positions `first .. first + count` (of the accelerator's own order,
+    /// [`crate::Built::order`]) for ray `i`.
+    fn leaf_range(&mut self, i: usize, first: u32, count: u32, t_max: f64) -> f64;
 
     /// Tests the items at the positions listed.
-    fn leaf_list<S: Simd>(&mut self, simd: S, i: usize, positions: &[u32], t_max: f64) -> f64;
+    fn leaf_list(&mut self, i: usize, positions: &[u32], t_max: f64) -> f64;
+
+    /// As `leaf_range`, for at most eight items; `narrow` is the ray in single precision, to rule items out.
+    fn leaf_block(&mut self, narrow: &NarrowRay, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
+        let _ = narrow;
+        self.leaf_range(i, first, count, t_max)
+    }
 
     /// Tests the items at positions `first .. first + count` for the rays of the groups `active` (bit by bit) of a
     /// packet, as `leaf_range` does for one, and sets their new bounds ([`Packet::set_t_max`]). Returns whether any
     /// bound has changed.
-    #[inline(always)]
-    fn leaf_packet<S: Simd>(
-        &mut self,
-        simd: S,
-        packet: &mut Packet,
-        active: u32,
-        first: u32,
-        count: u32,
-    ) -> bool {
+    fn leaf_packet(&mut self, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
         let mut changed = false;
         let mut left = active;
         while left != 0 {
@@ -45,8 +40,7 @@ pub trait Batch {
             let group = *packet.group(number);
             let alive = group.alive();
             for lane in (0..LANES).filter(|lane| alive >> lane & 1 == 1) {
-                let answer =
-                    self.leaf_range(simd, group.rays[lane] as usize, first, count, group.t_max[lane]);
+                let answer = self.leaf_range(group.rays[lane] as usize, first, count, group.t_max[lane]);
                 if answer < group.t_max[lane] {
                     packet.set_t_max(number, lane, answer);
                     changed = true;
@@ -58,9 +52,4 @@ pub trait Batch {
 
     /// Ray `i` is finished after this many box (or cell) tests.
     fn finished(&mut self, i: usize, box_tests: u64);
-
-    /// Whether there is no ray.
-    fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
 }

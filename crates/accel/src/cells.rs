@@ -5,7 +5,6 @@
 
 use crate::batch::Batch;
 use crate::input::Boxes;
-use crate::simd::Simd;
 use crate::stats::Defect;
 use dotray_geometry::Aabb;
 use rayon::prelude::*;
@@ -135,14 +134,7 @@ impl Mailbox {
 
     /// Shows the items of a leaf to ray `i`, without those it is known to have met, and returns the new bound.
     #[inline(always)]
-    pub fn show<S: Simd, B: Batch>(
-        &mut self,
-        simd: S,
-        batch: &mut B,
-        i: usize,
-        items: &[u32],
-        mut bound: f64,
-    ) -> f64 {
+    pub fn show(&mut self, batch: &mut dyn Batch, i: usize, items: &[u32], mut bound: f64) -> f64 {
         for block in items.chunks(Self::SLOTS) {
             let mut unmet = [0; Self::SLOTS];
             let mut count = 0;
@@ -155,7 +147,7 @@ impl Mailbox {
                 *slot = letter;
             }
             if count > 0 {
-                bound = batch.leaf_list(simd, i, &unmet[..count], bound);
+                bound = batch.leaf_list(i, &unmet[..count], bound);
                 if bound == f64::NEG_INFINITY {
                     break;
                 }

@@ -17,10 +17,10 @@ use dotray_geometry::Aabb;
 use dotray_geometry::Vec3;
 
 /// The smallest magnitude of a direction's component.
-const TINY: f64 = 1.0 / (1_u128 << 80) as f64;
+pub(crate) const TINY: f64 = 1.0 / (1_u128 << 80) as f64;
 
 /// The share of the coordinates by which boxes are treated as larger.
-const SLACK: f64 = 1.0 / (1_u64 << 46) as f64;
+pub(crate) const SLACK: f64 = 1.0 / (1_u64 << 46) as f64;
 
 /// A ray cut to a box, in double precision.
 #[derive(Clone, Copy, Debug)]

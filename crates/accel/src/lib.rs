@@ -6,8 +6,8 @@
 //! what the callbacks find: single precision only rules boxes out, with a bound derived in [`narrow`].
 //!
 //! ```
-//! use dotray_accel::simd::{Simd, level};
-//! use dotray_accel::{Accelerator, Batch, Boxes, Kind, Query, Settings};
+//! use dotray_accel::simd::level;
+//! use dotray_accel::{Accelerator, Batch, Boxes, Kind, Queries, Settings};
 //! use dotray_geometry::{Aabb, Ray, Vec3};
 //!
 //! /// A row of unit cubes, which are their own boxes.
@@ -24,24 +24,16 @@
 //!     }
 //! }
 //!
-//! /// One ray along the row, and the items it is shown.
+//! /// The items that a ray is shown.
 //! struct Look(Vec<u32>);
 //!
 //! impl Batch for Look {
-//!     fn len(&self) -> usize {
-//!         1
-//!     }
-//!
-//!     fn query(&self, _: usize) -> Query {
-//!         Query { ray: Ray::new(Vec3::new(-1.0, 0.5, 0.5), Vec3::X), t_min: 0.0, t_max: 4.5 }
-//!     }
-//!
-//!     fn leaf_range<S: Simd>(&mut self, simd: S, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
+//!     fn leaf_range(&mut self, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
 //!         let items: Vec<_> = (first..first + count).collect();
-//!         self.leaf_list(simd, i, &items, t_max)
+//!         self.leaf_list(i, &items, t_max)
 //!     }
 //!
-//!     fn leaf_list<S: Simd>(&mut self, _: S, _: usize, items: &[u32], t_max: f64) -> f64 {
+//!     fn leaf_list(&mut self, _: usize, items: &[u32], t_max: f64) -> f64 {
 //!         self.0.extend(items);
 //!         t_max // nothing nearer was found
 //!     }
@@ -51,7 +43,8 @@
 //!
 //! let built = Accelerator::build(Kind::Octree, &Row(100), &[], &Settings::default());
 //! let mut look = Look(Vec::new());
-//! built.accelerator.walk(level(), &mut look);
+//! let along = [Ray::new(Vec3::new(-1.0, 0.5, 0.5), Vec3::X)];
+//! built.accelerator.walk(level(), &Queries { rays: &along, t_min: &[0.0], t_max: &[4.5] }, &mut look);
 //! assert!([0, 1].iter().all(|item| look.0.contains(item)) && look.0.len() < 20);
 //! ```
 //!
@@ -92,6 +85,6 @@ pub mod accelerator;
 pub use accelerator::{Accelerator, Built};
 pub use batch::Batch;
 pub use input::{Boxes, GroupEvent, Kind, MAX_ITEMS, Quality, Settings};
-pub use query::Query;
+pub use query::{ENDLESS, Queries, Query};
 pub use simd::Level;
 pub use stats::{Defect, Stats};

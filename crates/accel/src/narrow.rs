@@ -127,14 +127,14 @@ impl Frame {
         [point.x as f32, point.y as f32, point.z as f32]
     }
 
-    /// Where a ray enters the scene, rounded to nearest.
-    #[inline(always)]
-    pub fn point_on(&self, ray: &ClippedRay) -> [f32; 3] {
-        let center = self.center.to_array();
-        let place = |axis: usize| {
-            ((ray.origin[axis] - center[axis] + ray.start * ray.direction[axis]) * self.scale) as f32
-        };
-        [place(0), place(1), place(2)]
+    /// The point of the world that the frame measures from.
+    pub(crate) fn center(&self) -> [f64; 3] {
+        self.center.to_array()
+    }
+
+    /// The shares of the relative and of the absolute slack.
+    pub(crate) fn slack_shares(&self) -> (f64, f64) {
+        (self.slack.relative, self.slack.absolute)
     }
 
     /// The factor that makes exits larger.
@@ -154,6 +154,9 @@ impl Frame {
     pub fn narrow_ray(&self, ray: &ClippedRay) -> NarrowRay {
         let center = self.center.to_array();
         let mut narrow = NarrowRay {
+            origin: [0.0; 3],
+            direction: [0.0; 3],
+            bound: 0.0,
             inverse: [0.0; 3],
             inverse_far: [0.0; 3],
             near_offset: [0.0; 3],
@@ -170,6 +173,8 @@ impl Frame {
             let pad = self.slack.relative * origin.abs() + narrow.slack * self.scale;
             let pad = pad.copysign(inverse);
             let inverse_far = inverse * narrow.widening;
+            narrow.origin[axis] = origin as f32;
+            narrow.direction[axis] = ray.direction[axis] as f32;
             narrow.inverse[axis] = inverse as f32;
             narrow.inverse_far[axis] = inverse_far as f32;
             narrow.near_offset[axis] = finite((origin + pad) * inverse, f32::MAX);
@@ -183,6 +188,12 @@ impl Frame {
 /// A ray in the frame, in single precision, ready for the test of eight boxes.
 #[derive(Clone, Copy, Debug)]
 pub struct NarrowRay {
+    /// Where it enters the scene, rounded to nearest.
+    pub origin: [f32; 3],
+    /// Its direction, rounded to nearest.
+    pub direction: [f32; 3],
+    /// The t' up to which boxes count.
+    pub bound: f32,
     /// The reciprocals of the direction.
     pub inverse: [f32; 3],
     /// The same, larger by the relative slack: for exits.
@@ -202,12 +213,18 @@ pub struct NarrowRay {
 impl NarrowRay {
     /// The t' up to which boxes count where the nearest hit lies at `t_max` in the world.
     #[inline(always)]
-    pub fn bound(&self, t_max: f64) -> f32 {
+    pub fn bound_at(&self, t_max: f64) -> f32 {
         bound_in_frame(t_max, self.start, self.slack, self.scale, self.widening)
+    }
+
+    /// Takes the t of the nearest hit.
+    #[inline(always)]
+    pub fn set_bound(&mut self, t_max: f64) {
+        self.bound = self.bound_at(t_max);
     }
 }
 
-/// See [`NarrowRay::bound`].
+/// See [`NarrowRay::bound_at`].
 #[inline(always)]
 pub fn bound_in_frame(t_max: f64, start: f64, slack: f64, scale: f64, widening: f64) -> f32 {
     let t = (t_max - start + slack) * scale * widening;

@@ -19,7 +19,8 @@ use crate::cells::touches;
 use crate::clip::ClippedRay;
 use crate::input::Boxes;
 use crate::input::Kind;
-use crate::simd::Simd;
+use crate::query::Queries;
+use crate::query::Query;
 use crate::stats::Defect;
 use crate::stats::Stats;
 use dotray_geometry::Aabb;
@@ -74,29 +75,27 @@ impl Octree {
     }
 
     /// Walks every ray of the batch.
-    #[inline(always)]
-    pub fn walk<S: Simd, B: Batch>(&self, simd: S, batch: &mut B) {
+    pub fn walk(&self, queries: &Queries<'_>, batch: &mut dyn Batch) {
         let mut mailbox = Mailbox::new();
         let mut stack = [Entry { cell: [[0.0; 2]; 3], enter: 0.0, node: 0 }; 7 * MAX_DEPTH as usize + 8];
-        for i in 0..batch.len() {
+        for i in 0..queries.len() {
             mailbox.next_ray();
-            let tests = self.walk_ray(simd, batch, i, &mut mailbox, &mut stack);
+            let tests = self.walk_ray(&queries.query(i), batch, i, &mut mailbox, &mut stack);
             batch.finished(i, tests);
         }
     }
 
     /// Walks one ray and returns how many cells it tested.
     #[inline(always)]
-    fn walk_ray<S: Simd, B: Batch>(
+    fn walk_ray(
         &self,
-        simd: S,
-        batch: &mut B,
+        query: &Query,
+        batch: &mut dyn Batch,
         i: usize,
         mailbox: &mut Mailbox,
         stack: &mut [Entry],
     ) -> u64 {
-        let query = batch.query(i);
-        let Some(ray) = ClippedRay::new(&query, &self.scene) else { return 1 };
+        let Some(ray) = ClippedRay::new(query, &self.scene) else { return 1 };
         let mut bound = query.t_max;
         let mut tests = 1;
         let mut top = 1;
@@ -114,7 +113,7 @@ impl Octree {
                 }
                 Node::Leaf(leaf) => {
                     let items = &self.references[leaf.first as usize..][..leaf.count as usize];
-                    bound = mailbox.show(simd, batch, i, items, bound);
+                    bound = mailbox.show(batch, i, items, bound);
                     if bound == f64::NEG_INFINITY {
                         break;
                     }

@@ -3,12 +3,15 @@
 //! All rays of a packet have directions of the same signs, so that they meet the planes of any box in one order.
 //! A lane without a ray, or whose ray has ended, has a bound below 0, which no box test passes.
 
-use crate::clip::ClippedRay;
+use crate::clip::SLACK;
+use crate::clip::TINY;
+use crate::clip::largest;
 use crate::narrow::Frame;
 use crate::narrow::bound_in_frame;
-use crate::query::Query;
+use crate::query::Queries;
 use crate::simd::Simd;
 use crate::simd::f32x8;
+use crate::simd::f64x8;
 use crate::simd::mask32x8;
 use crate::simd::prelude::*;
 
@@ -26,10 +29,14 @@ const ENDED: f32 = -1.0;
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct Group {
-    inverse: [[f32; LANES]; 3],
-    inverse_far: [[f32; LANES]; 3],
-    near_offset: [[f32; LANES]; 3],
-    far_offset: [[f32; LANES]; 3],
+    /// The reciprocals of the directions.
+    pub inverse: [[f32; LANES]; 3],
+    /// The same, larger by the relative slack: for exits.
+    pub inverse_far: [[f32; LANES]; 3],
+    /// The padded origins times the reciprocals, for entries.
+    pub near_offset: [[f32; LANES]; 3],
+    /// The same for exits.
+    pub far_offset: [[f32; LANES]; 3],
     /// Where the rays enter the scene, rounded to nearest.
     pub origin: [[f32; LANES]; 3],
     /// Their directions, rounded to nearest.
@@ -82,6 +89,117 @@ impl Group {
     }
 }
 
+/// Eight rays in double precision, a lane each.
+#[repr(C, align(64))]
+struct WideRays {
+    origin: [[f64; LANES]; 3],
+    direction: [[f64; LANES]; 3],
+    t_min: [f64; LANES],
+    t_max: [f64; LANES],
+    rays: [u32; LANES],
+}
+
+impl WideRays {
+    /// The rays of these numbers, one to eight; lanes without a ray hold the first one, which has ended.
+    #[inline(always)]
+    fn gather(queries: &Queries<'_>, rays: &[u32]) -> Self {
+        let mut wide = Self {
+            origin: [[0.0; LANES]; 3],
+            direction: [[0.0; LANES]; 3],
+            t_min: [0.0; LANES],
+            t_max: [f64::NEG_INFINITY; LANES],
+            rays: [0; LANES],
+        };
+        for lane in 0..LANES {
+            let number = *rays.get(lane).unwrap_or(&rays[0]);
+            let query = queries.query(number as usize);
+            for axis in 0..3 {
+                wide.origin[axis][lane] = query.ray.origin[axis];
+                wide.direction[axis][lane] = query.ray.direction[axis];
+            }
+            wide.rays[lane] = number;
+            if lane < rays.len() {
+                (wide.t_min[lane], wide.t_max[lane]) = (query.t_min, query.t_max);
+            }
+        }
+        wide
+    }
+
+    /// The rays cut to the scene and in single precision: [`crate::clip`] and [`crate::narrow`] give the reasons.
+    #[inline(always)]
+    fn narrow<S: Simd>(&self, simd: S, frame: &Frame) -> Group {
+        let number = |x: f64| f64x8::splat(simd, x);
+        let load = |lanes: &[f64; LANES]| f64x8::load_array_ref(simd, lanes);
+        let scene = frame.scene();
+        let (low, high, center) = (scene.min.to_array(), scene.max.to_array(), frame.center());
+        let (relative, absolute) = frame.slack_shares();
+        let origin = [load(&self.origin[0]), load(&self.origin[1]), load(&self.origin[2])];
+        let reach = origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
+        let slack = (reach + number(largest(scene.min).max(largest(scene.max)))) * number(SLACK);
+        let t_max = load(&self.t_max);
+        let (mut start, mut end) = (load(&self.t_min), t_max);
+        let mut inverse = [number(1.0); 3];
+        let mut direction = inverse;
+        for axis in 0..3 {
+            let d = load(&self.direction[axis]);
+            let tiny = number(TINY);
+            let d = d.abs().simd_lt(tiny).select(tiny.copysign(d), d);
+            let v = number(1.0) / d;
+            let a = (number(low[axis]) - slack - origin[axis]) * v;
+            let b = (number(high[axis]) + slack - origin[axis]) * v;
+            let backward = self.direction[axis][0].is_sign_negative();
+            start = start.max(if backward { b } else { a });
+            end = end.min(if backward { a } else { b });
+            (direction[axis], inverse[axis]) = (d, v);
+        }
+        let mut group = Group { rays: self.rays, ..Group::EMPTY };
+        let widening = frame.widening();
+        let scale = number(frame.scale());
+        for axis in 0..3 {
+            let place = (origin[axis] - number(center[axis]) + start * direction[axis]) * scale;
+            let pad = place.abs() * number(relative) + slack * number(absolute) * scale;
+            let pad = if self.direction[axis][0].is_sign_negative() { -pad } else { pad };
+            let inverse_far = inverse[axis] * number(widening);
+            group.inverse[axis] = singles(simd, inverse[axis]);
+            group.inverse_far[axis] = singles(simd, inverse_far);
+            group.near_offset[axis] = singles(simd, finite(simd, (place + pad) * inverse[axis], number(MAX)));
+            group.far_offset[axis] = singles(simd, finite(simd, (place - pad) * inverse_far, number(-MAX)));
+            group.origin[axis] = singles(simd, place);
+            group.direction[axis] = singles(simd, direction[axis]);
+        }
+        let slack = slack * number(absolute);
+        // Where the rays lie in the scene; never so in a lane without a ray, whose end is -inf.
+        let inside = start.simd_le(end).to_bitmask();
+        let bound = (t_max - start + slack) * scale * number(widening);
+        let bound = singles(simd, finite(simd, bound, number(f64::INFINITY)));
+        for lane in 0..LANES {
+            let met = inside >> lane & 1 == 1;
+            group.bound[lane] = if met { bound[lane].next_up() } else { ENDED };
+            group.t_max[lane] = if met { self.t_max[lane] } else { f64::NEG_INFINITY };
+        }
+        group.start = start.to_array();
+        group.slack = slack.to_array();
+        group
+    }
+}
+
+/// The largest single.
+const MAX: f64 = f32::MAX as f64;
+
+/// `x` cut to what a single can hold, and `widest` where it is not a number.
+#[inline(always)]
+fn finite<S: Simd>(simd: S, x: f64x8<S>, widest: f64x8<S>) -> f64x8<S> {
+    let x = x.simd_eq(x).select(x, widest);
+    x.max(f64x8::splat(simd, -MAX)).min(f64x8::splat(simd, MAX))
+}
+
+/// Each lane as a single, rounded to nearest.
+#[inline(always)]
+fn singles<S: Simd>(simd: S, lanes: f64x8<S>) -> [f32; LANES] {
+    let (low, high) = simd.split_f64x8(lanes);
+    simd.narrow_f64x4(low, high).to_array()
+}
+
 /// Up to [`GROUPS`] groups.
 #[derive(Clone, Debug)]
 pub struct Packet {
@@ -102,16 +220,6 @@ impl Packet {
         self.count = 0;
     }
 
-    /// Whether there is no room for another ray.
-    pub fn is_full(&self) -> bool {
-        self.count == GROUPS * LANES
-    }
-
-    /// Whether there is no ray.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
     /// Where its single precision measures from.
     #[inline(always)]
     pub fn frame(&self) -> &Frame {
@@ -123,50 +231,16 @@ impl Packet {
         self.count
     }
 
-    /// Adds ray number `ray` of the batch, already cut to the scene.
+    /// Adds up to eight rays of the batch as one group. Rays that miss the scene have ended from the start.
+    ///
+    /// It computes what [`ClippedRay`](crate::clip::ClippedRay) and [`Frame::narrow_ray`] compute, a ray a lane; the
+    /// signs of all directions are those of the first ray.
     #[inline(always)]
-    pub fn push(&mut self, frame: &Frame, ray: u32, query: &Query, clipped: &ClippedRay) {
-        let narrow = frame.narrow_ray(clipped);
-        let lane = self.count % LANES;
-        if lane == 0 {
-            self.groups.push(Group::EMPTY);
-        }
-        self.count += 1;
-        let Some(group) = self.groups.last_mut() else { return };
-        let origin = frame.point_on(clipped);
-        for axis in 0..3 {
-            group.inverse[axis][lane] = narrow.inverse[axis];
-            group.inverse_far[axis][lane] = narrow.inverse_far[axis];
-            group.near_offset[axis][lane] = narrow.near_offset[axis];
-            group.far_offset[axis][lane] = narrow.far_offset[axis];
-            group.origin[axis][lane] = origin[axis];
-            group.direction[axis][lane] = clipped.direction[axis] as f32;
-        }
-        group.start[lane] = clipped.start;
-        group.slack[lane] = clipped.slack;
-        group.t_max[lane] = query.t_max;
-        group.bound[lane] = narrow.bound(query.t_max);
-        group.rays[lane] = ray;
-    }
-
-    /// Fills the last group's empty lanes with copies of its first ray that have ended, so that what goes over all
-    /// lanes need not count them.
-    fn seal(&mut self) {
-        let filled = self.count % LANES;
-        let Some(group) = self.groups.last_mut().filter(|_| filled != 0) else { return };
-        for axis in 0..3 {
-            for lanes in [
-                &mut group.inverse[axis],
-                &mut group.inverse_far[axis],
-                &mut group.near_offset[axis],
-                &mut group.far_offset[axis],
-                &mut group.origin[axis],
-                &mut group.direction[axis],
-            ] {
-                let first = lanes[0];
-                lanes[filled..].fill(first);
-            }
-        }
+    pub fn push<S: Simd>(&mut self, simd: S, queries: &Queries<'_>, rays: &[u32]) {
+        let wide = WideRays::gather(queries, rays);
+        let group = wide.narrow(simd, &self.frame);
+        self.groups.push(group);
+        self.count += rays.len();
     }
 
     /// The groups that hold rays.
@@ -238,8 +312,7 @@ pub struct Beam {
 
 impl Beam {
     /// Around all rays that have been pushed.
-    pub fn around(packet: &mut Packet) -> Self {
-        packet.seal();
+    pub fn around(packet: &Packet) -> Self {
         let slack = packet.groups.iter().flat_map(|group| group.slack).fold(0.0, f64::max);
         let (mut low, mut high, mut inverse) = ([0.0; 3], [0.0; 3], [[0.0; 2]; 3]);
         for axis in 0..3 {

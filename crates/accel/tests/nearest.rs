@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Item, Random, Rays, Scene, Sphere, build, nearest, query, trace};
+use common::{Item, Random, Rays, Scene, Sphere, build, nearest, query, trace, walk};
 use dotray_accel::simd::{available_levels, level_name};
 use dotray_accel::{Accelerator, GroupEvent, Kind, Quality, Query, Settings};
 use dotray_geometry::{Aabb, Vec3};
@@ -285,7 +285,7 @@ fn all_but_brute_force_save_ten_times_the_work() {
     for kind in [Kind::Boxes, Kind::Octree, Kind::Bsp, Kind::Bvh] {
         let built = build(kind, &scene, &[]);
         let mut rays = Rays::new(&scene, built.order.as_deref(), &queries, false);
-        built.accelerator.walk(dotray_accel::simd::level(), &mut rays);
+        walk(&built, dotray_accel::simd::level(), &mut rays, false);
         let work = rays.item_tests + rays.box_tests;
         println!("{}: {} items, {} boxes a ray", kind.name(), rays.item_tests / 500, rays.box_tests / 500);
         assert!(work * 10 < 10_000 * 500, "{}: {work}", kind.name());

@@ -1,4 +1,4 @@
-//! Which of eight rays may hit a shape: in single precision, never wrongly no.
+//! Which rays may hit which shapes: in single precision, eight at a time, never wrongly no.
 //!
 //! All numbers are in the accelerator's frame ([`dotray_accel::narrow`]): points of the scene have coordinates of
 //! magnitude 1 at most, and rays start in the scene, so that |c - o| < 3.5 for a point c and a start o. With
@@ -7,17 +7,24 @@
 //!
 //! - a distance between a ray and a point or an axis is off by less than 60 u: [`MARGIN`] is 128 u;
 //! - the products of the triangle's test are off by less than 60 u times the edges' lengths, and [`MARGIN`] times the
-//!   sum of both is allowed.
+//!   sum of both is allowed; the plane's normal is computed from the rounded edges, so that what depends on it is off
+//!   by less than 60 u times the product of their lengths.
+//!
+//! The numbers stand side by side, a list a coordinate and a place a position, so that the same arithmetic serves
+//! eight shapes of a leaf against one ray (lanes are shapes) and one shape against eight rays (lanes are rays).
 
 use dotray_accel::narrow::Frame;
+use dotray_accel::narrow::NarrowRay;
+use dotray_accel::packet::GROUPS;
 use dotray_accel::packet::Group;
 use dotray_accel::packet::LANES;
+use dotray_accel::packet::Packet;
 use dotray_accel::simd::Simd;
 use dotray_accel::simd::f32x8;
+use dotray_accel::simd::mask32x8;
 use dotray_accel::simd::prelude::*;
 use dotray_geometry::Aabb;
 use dotray_geometry::Affine;
-use dotray_geometry::Sphere;
 use dotray_geometry::Vec3;
 
 /// See above: 128 u.
@@ -25,12 +32,6 @@ const MARGIN: f32 = 1.0 / (1 << 17) as f32;
 
 // No `array::map` over vectors here: the library's loop is not inlined into the function that has the SIMD
 // instructions, and each operation then becomes a call.
-
-/// A shape made ready to be ruled out for many groups of rays.
-pub trait Cull {
-    /// Which lanes may hit it between their starts and their bounds, bit by bit; ended lanes never do.
-    fn may_hit<S: Simd>(&self, simd: S, group: &Group) -> u32;
-}
 
 type Lanes<S> = [f32x8<S>; 3];
 
@@ -63,135 +64,273 @@ fn sub<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// A ball.
-pub struct Ball {
-    center: [f32; 3],
-    reach: f32,
+/// Eight rays, or one ray eight times.
+struct Rays<S: Simd> {
+    origin: Lanes<S>,
+    direction: Lanes<S>,
+    bound: f32x8<S>,
+    inverse: Lanes<S>,
+    inverse_far: Lanes<S>,
+    near_offset: Lanes<S>,
+    far_offset: Lanes<S>,
+    /// Which side of a box each ray leaves through: 0 the low one, 1 the high one.
+    far_side: [usize; 3],
 }
 
-impl Ball {
-    /// Around a sphere of the world.
+impl<S: Simd> Rays<S> {
     #[inline(always)]
-    pub fn new(frame: &Frame, center: Vec3, radius: f64) -> Self {
-        let radius = (radius * frame.scale()) as f32;
-        Self { center: frame.point(center), reach: radius * (1.0 + MARGIN) + MARGIN }
-    }
-
-    /// Around a sphere of the world.
-    #[inline(always)]
-    pub fn around(frame: &Frame, sphere: &Sphere) -> Self {
-        Self::new(frame, sphere.center(), sphere.radius())
-    }
-}
-
-impl Cull for Ball {
-    #[inline(always)]
-    fn may_hit<S: Simd>(&self, simd: S, group: &Group) -> u32 {
-        let direction = load(simd, &group.direction);
-        let to_center = sub(splat(simd, self.center), load(simd, &group.origin));
-        let along = dot(to_center, direction);
-        let aside = sub(to_center, [direction[0] * along, direction[1] * along, direction[2] * along]);
-        let bound = f32x8::load_array_ref(simd, &group.bound);
-        let reach = f32x8::splat(simd, self.reach);
-        let near = dot(aside, aside).simd_le(reach * reach);
-        let ahead = (along + reach).simd_ge(f32x8::splat(simd, -MARGIN));
-        let in_time = (along - reach - f32x8::splat(simd, MARGIN)).simd_le(bound);
-        let alive = bound.simd_ge(f32x8::splat(simd, 0.0));
-        (near & ahead & in_time & alive).to_bitmask() as u32
-    }
-}
-
-/// A round bar: what has a distance of at most a radius from an axis, inside a ball around its middle.
-pub struct Bar {
-    ball: Ball,
-    axis: [f32; 3],
-    reach: f32,
-}
-
-impl Bar {
-    /// Around a cylinder or cone of the world from `base` along the unit vector `axis`.
-    #[inline(always)]
-    pub fn new(frame: &Frame, base: Vec3, axis: Vec3, radius: f64, height: f64) -> Self {
-        let half = 0.5 * height;
-        let ball = Ball::new(frame, base + axis * half, (radius * radius + half * half).sqrt());
-        let reach = (radius * frame.scale()) as f32 * (1.0 + MARGIN);
-        Self { ball, axis: axis.to_array().map(|x| x as f32), reach }
-    }
-}
-
-impl Cull for Bar {
-    #[inline(always)]
-    fn may_hit<S: Simd>(&self, simd: S, group: &Group) -> u32 {
-        let in_ball = self.ball.may_hit(simd, group);
-        if in_ball == 0 {
-            return 0;
+    fn of_group(simd: S, group: &Group) -> Self {
+        Self {
+            origin: load(simd, &group.origin),
+            direction: load(simd, &group.direction),
+            bound: f32x8::load_array_ref(simd, &group.bound),
+            inverse: load(simd, &group.inverse),
+            inverse_far: load(simd, &group.inverse_far),
+            near_offset: load(simd, &group.near_offset),
+            far_offset: load(simd, &group.far_offset),
+            // All lanes of a packet have directions of the same signs.
+            far_side: [side(&group.direction[0]), side(&group.direction[1]), side(&group.direction[2])],
         }
-        let to_center = sub(splat(simd, self.ball.center), load(simd, &group.origin));
-        let across = cross(load(simd, &group.direction), splat(simd, self.axis));
-        let distance = dot(to_center, across).abs();
-        let length = dot(across, across).sqrt();
-        let reach = length * f32x8::splat(simd, self.reach) + f32x8::splat(simd, MARGIN);
-        in_ball & distance.simd_le(reach).to_bitmask() as u32
+    }
+
+    #[inline(always)]
+    fn of_ray(simd: S, ray: &NarrowRay) -> Self {
+        Self {
+            origin: splat(simd, ray.origin),
+            direction: splat(simd, ray.direction),
+            bound: f32x8::splat(simd, ray.bound),
+            inverse: splat(simd, ray.inverse),
+            inverse_far: splat(simd, ray.inverse_far),
+            near_offset: splat(simd, ray.near_offset),
+            far_offset: splat(simd, ray.far_offset),
+            far_side: ray.far_side,
+        }
     }
 }
 
-/// An axis-aligned box.
-pub struct Block {
-    low: [f32; 3],
-    high: [f32; 3],
+#[inline(always)]
+fn side(direction: &[f32; LANES]) -> usize {
+    usize::from(!direction[0].is_sign_negative())
 }
 
-impl Block {
-    /// Around a box of the world.
-    #[inline(always)]
-    pub fn new(frame: &Frame, bounds: &Aabb) -> Self {
+/// What rules shapes out, by position. A list stays empty while no shape needs it, and holds what rules nothing out
+/// at the positions of shapes that do not.
+#[derive(Debug, Default)]
+pub struct Culls {
+    /// Balls: the centre and the reach.
+    balls: [Vec<f32>; 4],
+    /// Round bars in their balls: the axis and the reach.
+    bars: [Vec<f32>; 4],
+    /// Axis-aligned boxes: the low and the high planes.
+    boxes: [Vec<f32>; 6],
+    /// Triangles: a corner and the two edges that leave it.
+    corners: [Vec<f32>; 9],
+}
+
+const ANY_BALL: [f32; 4] = [0.0, 0.0, 0.0, f32::INFINITY];
+
+/// Across an axis of no length every distance is 0.
+const ANY_BAR: [f32; 4] = [0.0; 4];
+
+const ANY_BOX: [f32; 6] = [f32::MIN, f32::MIN, f32::MIN, f32::MAX, f32::MAX, f32::MAX];
+
+/// A triangle without an area lies along every ray.
+const ANY_CORNER: [f32; 9] = [0.0; 9];
+
+/// Puts numbers at a position, behind places that rule nothing out.
+fn put<const N: usize>(lists: &mut [Vec<f32>; N], position: usize, any: [f32; N], numbers: [f32; N]) {
+    fill(lists, position, any);
+    for (list, number) in lists.iter_mut().zip(numbers) {
+        list.push(number);
+    }
+}
+
+fn fill<const N: usize>(lists: &mut [Vec<f32>; N], len: usize, any: [f32; N]) {
+    for (list, number) in lists.iter_mut().zip(any) {
+        list.resize(len, number);
+    }
+}
+
+fn joined<const A: usize, const B: usize, const N: usize>(a: [f32; A], b: [f32; B]) -> [f32; N] {
+    let mut all = [0.0; N];
+    all[..A].copy_from_slice(&a);
+    all[A..].copy_from_slice(&b);
+    all
+}
+
+impl Culls {
+    /// A ball of the world.
+    pub fn put_ball(&mut self, frame: &Frame, position: usize, center: Vec3, radius: f64) {
+        let reach = (radius * frame.scale()) as f32 * (1.0 + MARGIN) + MARGIN;
+        put(&mut self.balls, position, ANY_BALL, joined(frame.point(center), [reach]));
+    }
+
+    /// What lies around a line of the world.
+    pub fn put_bar(&mut self, frame: &Frame, position: usize, spine: &Spine) {
+        self.put_ball(frame, position, spine.point, spine.reach);
+        let axis = spine.axis.to_array().map(|x| x as f32);
+        let reach = (spine.radius * frame.scale()) as f32 * (1.0 + MARGIN);
+        put(&mut self.bars, position, ANY_BAR, joined(axis, [reach]));
+    }
+
+    /// What lies in a box of the world.
+    pub fn put_box(&mut self, frame: &Frame, position: usize, bounds: &Aabb) {
         let narrow = frame.narrow(bounds);
-        Self { low: narrow.low, high: narrow.high }
+        put(&mut self.boxes, position, ANY_BOX, joined(narrow.low, narrow.high));
     }
-}
 
-impl Cull for Block {
-    #[inline(always)]
-    fn may_hit<S: Simd>(&self, simd: S, group: &Group) -> u32 {
-        // All lanes of a packet have directions of the same signs.
-        let (mut near, mut far) = (self.low, self.high);
-        for axis in 0..3 {
-            if group.direction[axis][0].is_sign_negative() {
-                (near[axis], far[axis]) = (far[axis], near[axis]);
+    /// A triangle of the world.
+    pub fn put_triangle(&mut self, frame: &Frame, position: usize, corners: &[Vec3; 3]) {
+        let edge = |i: usize| ((corners[i] - corners[0]) * frame.scale()).to_array().map(|x| x as f32);
+        let edges: [f32; 6] = joined(edge(1), edge(2));
+        put(&mut self.corners, position, ANY_CORNER, joined(frame.point(corners[0]), edges));
+    }
+
+    /// Ends the lists so that eight places may be read from every one of `count` positions.
+    pub fn finish(&mut self, count: usize) {
+        fn end<const N: usize>(lists: &mut [Vec<f32>; N], len: usize, any: [f32; N]) {
+            if !lists[0].is_empty() {
+                lists.iter_mut().for_each(|list| list.reserve_exact(len - list.len()));
+                fill(lists, len, any);
             }
         }
-        group.meets(simd, near, far).to_bitmask() as u32
+        end(&mut self.balls, count + LANES, ANY_BALL);
+        end(&mut self.bars, count + LANES, ANY_BAR);
+        end(&mut self.boxes, count + LANES, ANY_BOX);
+        end(&mut self.corners, count + LANES, ANY_CORNER);
     }
-}
 
-/// A shape of which only its world box is known, and that it is a bar: around an axis, within a radius of it.
-pub struct Boxed {
-    block: Block,
-    bar: Option<Bar>,
-}
-
-impl Boxed {
-    /// A shape in a box.
-    #[inline(always)]
-    pub fn new(frame: &Frame, bounds: &Aabb, spine: Option<&Spine>) -> Self {
-        let bar = spine.map(|spine| Bar {
-            ball: Ball::new(frame, spine.point, spine.reach),
-            axis: spine.axis.to_array().map(|x| x as f32),
-            reach: (spine.radius * frame.scale()) as f32 * (1.0 + MARGIN),
-        });
-        Self { block: Block::new(frame, bounds), bar }
+    /// The bytes of the lists.
+    pub fn memory(&self) -> u64 {
+        let lists = self.balls.iter().chain(&self.bars).chain(&self.boxes).chain(&self.corners);
+        lists.map(|list| size_of_val(list.as_slice()) as u64).sum()
     }
-}
 
-impl Cull for Boxed {
+    /// Which of the `count` shapes from position `first` on (eight at most) the ray may hit, bit by bit.
     #[inline(always)]
-    fn may_hit<S: Simd>(&self, simd: S, group: &Group) -> u32 {
-        let in_block = self.block.may_hit(simd, group);
-        match &self.bar {
-            Some(bar) if in_block != 0 => in_block & bar.may_hit(simd, group),
-            Some(_) | None => in_block,
+    pub fn block<S: Simd>(&self, simd: S, ray: &NarrowRay, first: u32, count: u32) -> u32 {
+        let first = first as usize;
+        let rays = Rays::of_ray(simd, ray);
+        let get = |list: &Vec<f32>| f32x8::from_slice(simd, &list[first..first + LANES]);
+        let present = (1_u32 << count) - 1;
+        present & self.may_hit(simd, &rays, get)
+    }
+
+    /// Which lanes of the groups `active` of a packet may hit the shape at `position`, bit by bit.
+    #[inline(always)]
+    pub fn sweep<S: Simd>(&self, simd: S, position: u32, packet: &Packet, active: u32) -> [u8; GROUPS] {
+        let get = |list: &Vec<f32>| f32x8::splat(simd, list[position as usize]);
+        let mut lanes = [0; GROUPS];
+        let mut left = active;
+        while left != 0 {
+            let group = left.trailing_zeros() as usize % GROUPS;
+            left &= left - 1;
+            let rays = Rays::of_group(simd, packet.group(group));
+            lanes[group] = self.may_hit(simd, &rays, get) as u8;
         }
+        lanes
     }
+
+    /// Which lanes may hit; `get` takes the lanes' shapes out of a list. Rays that have ended never do.
+    #[inline(always)]
+    fn may_hit<S: Simd>(&self, simd: S, rays: &Rays<S>, get: impl Fn(&Vec<f32>) -> f32x8<S>) -> u32 {
+        let mut may = rays.bound.simd_ge(f32x8::splat(simd, 0.0));
+        if let [x, y, z, reach] = &self.balls
+            && !x.is_empty()
+        {
+            let center = [get(x), get(y), get(z)];
+            may &= meets_ball(simd, rays, center, get(reach));
+            if let [x, y, z, reach] = &self.bars
+                && !x.is_empty()
+                && may.any_true()
+            {
+                may &= meets_bar(simd, rays, center, [get(x), get(y), get(z)], get(reach));
+            }
+        }
+        if !self.boxes[0].is_empty() && may.any_true() {
+            let low = [get(&self.boxes[0]), get(&self.boxes[1]), get(&self.boxes[2])];
+            let high = [get(&self.boxes[3]), get(&self.boxes[4]), get(&self.boxes[5])];
+            may &= meets_box(simd, rays, low, high);
+        }
+        if let [x, y, z, ux, uy, uz, vx, vy, vz] = &self.corners
+            && !x.is_empty()
+            && may.any_true()
+        {
+            let point = [get(x), get(y), get(z)];
+            let edges = [[get(ux), get(uy), get(uz)], [get(vx), get(vy), get(vz)]];
+            may &= meets_triangle(simd, rays, point, edges);
+        }
+        may.to_bitmask() as u32
+    }
+}
+
+#[inline(always)]
+fn meets_ball<S: Simd>(simd: S, rays: &Rays<S>, center: Lanes<S>, reach: f32x8<S>) -> mask32x8<S> {
+    let to_center = sub(center, rays.origin);
+    let along = dot(to_center, rays.direction);
+    let d = &rays.direction;
+    let aside = sub(to_center, [d[0] * along, d[1] * along, d[2] * along]);
+    let margin = f32x8::splat(simd, MARGIN);
+    let near = dot(aside, aside).simd_le(reach * reach);
+    let ahead = (along + reach).simd_ge(-margin);
+    let in_time = (along - reach - margin).simd_le(rays.bound);
+    near & ahead & in_time
+}
+
+/// A round bar: what has a distance of at most `reach` from an axis through the ball's centre.
+#[inline(always)]
+fn meets_bar<S: Simd>(
+    simd: S,
+    rays: &Rays<S>,
+    center: Lanes<S>,
+    axis: Lanes<S>,
+    reach: f32x8<S>,
+) -> mask32x8<S> {
+    let to_center = sub(center, rays.origin);
+    let across = cross(rays.direction, axis);
+    let distance = dot(to_center, across).abs();
+    let length = dot(across, across).sqrt();
+    distance.simd_le(length * reach + f32x8::splat(simd, MARGIN))
+}
+
+#[inline(always)]
+fn meets_box<S: Simd>(simd: S, rays: &Rays<S>, low: Lanes<S>, high: Lanes<S>) -> mask32x8<S> {
+    let mut enter = f32x8::splat(simd, 0.0);
+    let mut leave = rays.bound;
+    for axis in 0..3 {
+        let (near, far) =
+            if rays.far_side[axis] == 1 { (low[axis], high[axis]) } else { (high[axis], low[axis]) };
+        enter = enter.max(near.mul_sub(rays.inverse[axis], rays.near_offset[axis]));
+        leave = leave.min(far.mul_sub(rays.inverse_far[axis], rays.far_offset[axis]));
+    }
+    enter.simd_le(leave)
+}
+
+/// After Möller and Trumbore, 'Fast, minimum storage ray/triangle intersection', 1997, without the division and with
+/// margins.
+#[inline(always)]
+fn meets_triangle<S: Simd>(simd: S, rays: &Rays<S>, point: Lanes<S>, edges: [Lanes<S>; 2]) -> mask32x8<S> {
+    let number = |x: f32| f32x8::splat(simd, x);
+    let to_point = sub(point, rays.origin);
+    let normal = cross(edges[0], edges[1]);
+    let turned = cross(to_point, rays.direction);
+    let volume = dot(normal, rays.direction);
+    let size = volume.abs();
+    // The sign of the volume, brought to the others.
+    let sign = number(1.0).copysign(volume);
+    let u = sign * dot(turned, edges[1]);
+    let v = -sign * dot(turned, edges[0]);
+    let t = sign * dot(normal, to_point);
+    // The sum of the coordinates' magnitudes is never less than the length.
+    let length = |e: &Lanes<S>| e[0].abs() + e[1].abs() + e[2].abs();
+    let (first, second) = (length(&edges[0]), length(&edges[1]));
+    let margin = number(MARGIN) * (first + second);
+    let plane_margin = number(MARGIN) * first * second;
+    let inside = u.simd_ge(-margin) & v.simd_ge(-margin) & (u + v).simd_le(size + margin);
+    let in_time = t.simd_ge(-plane_margin) & t.simd_le(rays.bound * size + plane_margin);
+    // Where the ray runs along the plane, the sign of the volume may be wrong.
+    let grazing = size.simd_le(plane_margin);
+    (inside & in_time) | grazing
 }
 
 /// A line of the world that a shape lies around.
@@ -208,6 +347,12 @@ pub struct Spine {
 }
 
 impl Spine {
+    /// Around a cylinder or cone of the world from `base` along the unit vector `axis`.
+    pub fn along(base: Vec3, axis: Vec3, radius: f64, height: f64) -> Self {
+        let half = 0.5 * height;
+        Self { point: base + axis * half, axis, radius, reach: (radius * radius + half * half).sqrt() }
+    }
+
     /// Around a cylinder or cone along the object's y axis whose world box is `bounds`: its discs become ellipses,
     /// whose longer half axis is the radius times the larger singular value of the two other columns.
     pub fn new(world_from_object: &Affine, bounds: &Aabb, center: Vec3, radius: f64) -> Option<Self> {
@@ -221,63 +366,5 @@ impl Spine {
         let reach = (bounds.max - point).max(point - bounds.min).length();
         let spine = Self { point, axis, radius: radius * largest.sqrt() * (1.0 + 1e-12), reach };
         (spine.radius.is_finite() && reach.is_finite()).then_some(spine)
-    }
-}
-
-/// A triangle, after Möller and Trumbore, 'Fast, minimum storage ray/triangle intersection', 1997, without the
-/// division and with margins.
-pub struct Corner {
-    point: [f32; 3],
-    edges: [[f32; 3]; 2],
-    normal: [f32; 3],
-    margin: f32,
-    margin_of_t: f32,
-    grazing: f32,
-}
-
-impl Corner {
-    /// The triangle with these corners in the world.
-    #[inline(always)]
-    pub fn new(frame: &Frame, corners: &[Vec3; 3]) -> Self {
-        let edge = |i: usize| (corners[i] - corners[0]) * frame.scale();
-        let (first, second) = (edge(1), edge(2));
-        let normal = first.cross(second);
-        let narrow = |v: Vec3| v.to_array().map(|x| x as f32);
-        let length = normal.length() as f32;
-        Self {
-            point: frame.point(corners[0]),
-            edges: [narrow(first), narrow(second)],
-            normal: narrow(normal),
-            margin: MARGIN * (first.length() + second.length()) as f32,
-            margin_of_t: MARGIN * length,
-            grazing: MARGIN * length,
-        }
-    }
-}
-
-impl Cull for Corner {
-    #[inline(always)]
-    fn may_hit<S: Simd>(&self, simd: S, group: &Group) -> u32 {
-        let number = |x: f32| f32x8::splat(simd, x);
-        let direction = load(simd, &group.direction);
-        let to_point = sub(splat(simd, self.point), load(simd, &group.origin));
-        let normal = splat(simd, self.normal);
-        let turned = cross(to_point, direction);
-        let volume = dot(normal, direction);
-        let size = volume.abs();
-        // The sign of the volume, brought to the others.
-        let signed = |x: f32x8<S>| x * number(1.0).copysign(volume);
-        let u = signed(dot(turned, splat(simd, self.edges[1])));
-        let v = signed(-dot(turned, splat(simd, self.edges[0])));
-        let t = signed(dot(normal, to_point));
-        let margin = number(self.margin);
-        let inside = u.simd_ge(-margin) & v.simd_ge(-margin) & (u + v).simd_le(size + margin);
-        let bound = f32x8::load_array_ref(simd, &group.bound);
-        let margin_of_t = number(self.margin_of_t);
-        let in_time = t.simd_ge(-margin_of_t) & t.simd_le(bound * size + margin_of_t);
-        // Where the ray runs along the plane, the sign of the volume may be wrong.
-        let grazing = size.simd_le(number(self.grazing));
-        let alive = bound.simd_ge(number(0.0));
-        (((inside & in_time) | grazing) & alive).to_bitmask() as u32
     }
 }

@@ -1,7 +1,5 @@
 //! The forms in which shapes are baked, and how a position tells its form.
 
-use crate::cull::Spine;
-use dotray_geometry::Aabb;
 use dotray_geometry::Cuboid;
 use dotray_geometry::Transform;
 use dotray_geometry::Vec3;
@@ -63,23 +61,6 @@ impl Slot {
     #[inline(always)]
     pub(crate) fn index(self) -> usize {
         (self.0 & ((1 << Self::INDEX_BITS) - 1)) as usize
-    }
-}
-
-/// A shape that is tested in object coordinates, with what rules it out before.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Framed<T> {
-    /// In object coordinates.
-    pub shape: T,
-    /// In the world.
-    pub bounds: Aabb,
-    /// The line that a cylinder or cone lies around.
-    pub spine: Option<Spine>,
-}
-
-impl<T> Framed<T> {
-    pub(crate) fn new(shape: T, bounds: Aabb, spine: Option<Spine>) -> Self {
-        Self { shape, bounds, spine }
     }
 }
 

@@ -27,9 +27,11 @@ mod form;
 
 pub mod shapes;
 
-pub mod world;
+pub mod query;
 
-mod query;
+pub mod caster;
+
+pub mod world;
 
 pub mod shade;
 
@@ -39,8 +41,10 @@ pub mod sampler;
 
 pub mod tiles;
 
+pub use caster::Caster;
 pub use error::RenderError;
 pub use options::{Antialias, Crop, Options, PrepareOptions, Shadows, TextureFilter};
+pub use query::Nearest;
 pub use stats::{MemoryPart, Stats};
 pub use tiles::{Observer, Rendering, Silent, render};
 pub use world::World;

@@ -2,9 +2,12 @@
 
 use crate::shapes::Shapes;
 use dotray_accel::Batch;
-use dotray_accel::Query;
+use dotray_accel::Level;
+use dotray_accel::Queries;
+use dotray_accel::narrow::NarrowRay;
+use dotray_accel::packet::GROUPS;
 use dotray_accel::packet::Packet;
-use dotray_accel::simd::Simd;
+use dotray_accel::simd::dispatch;
 use dotray_geometry::Hit;
 use dotray_geometry::Ray;
 use dotray_geometry::shape::TriangleRay;
@@ -31,10 +34,10 @@ pub struct Tests {
 
 /// The nearest hits of many rays.
 pub struct NearestBatch<'a> {
+    level: Level,
     shapes: &'a Shapes,
-    rays: &'a [Ray],
+    queries: Queries<'a>,
     triangle_rays: Vec<TriangleRay>,
-    t_min: f64,
     /// The answers.
     pub found: Vec<Option<Nearest>>,
     /// What each ray cost.
@@ -42,32 +45,31 @@ pub struct NearestBatch<'a> {
 }
 
 /// One prepared ray for each ray where there are triangles, else one that nobody looks at.
-fn prepare<'a>(shapes: &Shapes, rays: impl Iterator<Item = &'a Ray>) -> Vec<TriangleRay> {
+fn prepare(shapes: &Shapes, rays: &[Ray]) -> Vec<TriangleRay> {
     let needed = if shapes.has_triangles() { usize::MAX } else { 1 };
-    rays.take(needed).map(TriangleRay::new).collect()
+    rays.iter().take(needed).map(TriangleRay::new).collect()
 }
 
 impl<'a> NearestBatch<'a> {
-    /// The question for `rays`, from `t_min` on.
-    pub fn new(shapes: &'a Shapes, rays: &'a [Ray], t_min: f64) -> Self {
+    /// The question for these rays.
+    pub fn new(level: Level, shapes: &'a Shapes, queries: Queries<'a>) -> Self {
         Self {
+            level,
             shapes,
-            rays,
-            triangle_rays: prepare(shapes, rays.iter()),
-            t_min,
-            found: vec![None; rays.len()],
-            tests: vec![Tests::default(); rays.len()],
+            queries,
+            triangle_rays: prepare(shapes, queries.rays),
+            found: vec![None; queries.len()],
+            tests: vec![Tests::default(); queries.len()],
         }
     }
 
-    /// Tests one shape; answers with the new upper bound of t. Not inlined: a copy in every kernel of every SIMD
-    /// level would double the time that this crate takes to build.
-    #[inline(never)]
+    /// Tests one shape; answers with the new upper bound of t.
     fn test(&mut self, i: usize, position: u32, t_max: f64) -> f64 {
         self.tests[i].shapes += 1;
         let triangle_ray = &self.triangle_rays[if self.triangle_rays.len() == 1 { 0 } else { i }];
-        let crossings = self.shapes.crossings(position, &self.rays[i], triangle_ray);
-        let Some(hit) = crossings.first_within(self.t_min, t_max) else { return t_max };
+        let query = self.queries.query(i);
+        let crossings = self.shapes.crossings(position, &query.ray, triangle_ray);
+        let Some(hit) = crossings.first_within(query.t_min, t_max) else { return t_max };
         let number = self.shapes.number(position);
         // An exact tie goes to the shape that stands first in the file.
         if self.found[i].is_none_or(|best| hit.t < best.hit.t || number < best.number) {
@@ -79,44 +81,33 @@ impl<'a> NearestBatch<'a> {
 }
 
 impl Batch for NearestBatch<'_> {
-    fn len(&self) -> usize {
-        self.rays.len()
-    }
-
-    fn query(&self, i: usize) -> Query {
-        Query { ray: self.rays[i], t_min: self.t_min, t_max: f64::INFINITY }
-    }
-
-    #[inline(always)]
-    fn leaf_range<S: Simd>(&mut self, _simd: S, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
+    fn leaf_range(&mut self, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
         (first..first + count).fold(t_max, |t_max, position| self.test(i, position, t_max))
     }
 
-    #[inline(always)]
-    fn leaf_list<S: Simd>(&mut self, _simd: S, i: usize, positions: &[u32], t_max: f64) -> f64 {
+    fn leaf_list(&mut self, i: usize, positions: &[u32], t_max: f64) -> f64 {
         positions.iter().fold(t_max, |t_max, &position| self.test(i, position, t_max))
     }
 
-    #[inline(always)]
-    fn leaf_packet<S: Simd>(
-        &mut self,
-        simd: S,
-        packet: &mut Packet,
-        active: u32,
-        first: u32,
-        count: u32,
-    ) -> bool {
-        let shapes = self.shapes;
+    fn leaf_block(&mut self, narrow: &NarrowRay, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
+        let left = block(self.level, self.shapes, narrow, first, count);
+        bits(left).fold(t_max, |t_max, lane| self.test(i, first + lane, t_max))
+    }
+
+    fn leaf_packet(&mut self, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
         let mut changed = false;
         for position in first..first + count {
-            shapes.sweep(simd, position, packet, active, |packet, group, lane| {
-                let (ray, t_max) = (packet.group(group).rays[lane], packet.group(group).t_max[lane]);
-                let answer = self.test(ray as usize, position, t_max);
-                if answer < t_max {
-                    packet.set_t_max(group, lane, answer);
-                    changed = true;
+            let lanes = sweep(self.level, self.shapes, position, packet, active);
+            for group in bits(active).map(|group| group as usize) {
+                for lane in bits(u32::from(lanes[group])).map(|lane| lane as usize) {
+                    let (ray, t_max) = (packet.group(group).rays[lane], packet.group(group).t_max[lane]);
+                    let answer = self.test(ray as usize, position, t_max);
+                    if answer < t_max {
+                        packet.set_t_max(group, lane, answer);
+                        changed = true;
+                    }
                 }
-            });
+            }
         }
         changed
     }
@@ -126,13 +117,31 @@ impl Batch for NearestBatch<'_> {
     }
 }
 
-/// A ray to a light, and how far it reaches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShadowRay {
-    /// From the surface towards the light.
-    pub ray: Ray,
-    /// Hits count below this t.
-    pub t_end: f64,
+/// The places of the bits that are set.
+fn bits(mut set: u32) -> impl Iterator<Item = u32> {
+    std::iter::from_fn(move || {
+        let place = (set != 0).then(|| set.trailing_zeros());
+        set &= set.wrapping_sub(1);
+        place
+    })
+}
+
+/// Which shapes of a leaf the ray may hit, bit by bit.
+#[inline]
+fn block(level: Level, shapes: &Shapes, narrow: &NarrowRay, first: u32, count: u32) -> u32 {
+    match shapes.culls() {
+        Some(culls) => dispatch!(level, simd => culls.block(simd, narrow, first, count)),
+        None => (1 << count) - 1,
+    }
+}
+
+/// Which lanes of the active groups may hit the shape at `position`.
+#[inline]
+fn sweep(level: Level, shapes: &Shapes, position: u32, packet: &Packet, active: u32) -> [u8; GROUPS] {
+    match shapes.culls() {
+        Some(culls) => dispatch!(level, simd => culls.sweep(simd, position, packet, active)),
+        None => [u8::MAX; GROUPS],
+    }
 }
 
 /// A see-through surface that a shadow ray crosses.
@@ -157,10 +166,10 @@ pub enum Between {
 
 /// The occlusion of many shadow rays.
 pub struct ShadowBatch<'a, F> {
+    level: Level,
     shapes: &'a Shapes,
-    rays: &'a [ShadowRay],
+    queries: Queries<'a>,
     triangle_rays: Vec<TriangleRay>,
-    t_min: f64,
     see_through: F,
     /// The answers; complete after [`ShadowBatch::finish`].
     pub found: Vec<Between>,
@@ -169,16 +178,16 @@ pub struct ShadowBatch<'a, F> {
 }
 
 impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
-    /// The question for `rays`, from `t_min` on; `see_through` says of a material whether light passes.
-    pub fn new(shapes: &'a Shapes, rays: &'a [ShadowRay], t_min: f64, see_through: F) -> Self {
+    /// The question for these rays; `see_through` says of a material whether light passes.
+    pub fn new(level: Level, shapes: &'a Shapes, queries: Queries<'a>, see_through: F) -> Self {
         Self {
+            level,
             shapes,
-            rays,
-            triangle_rays: prepare(shapes, rays.iter().map(|shadow| &shadow.ray)),
-            t_min,
+            queries,
+            triangle_rays: prepare(shapes, queries.rays),
             see_through,
-            found: vec![Between::Crossed(Vec::new()); rays.len()],
-            tests: vec![Tests::default(); rays.len()],
+            found: vec![Between::Crossed(Vec::new()); queries.len()],
+            tests: vec![Tests::default(); queries.len()],
         }
     }
 
@@ -200,14 +209,13 @@ impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
     }
 
     /// Tests one shape; answers whether it blocks the ray.
-    #[inline(never)]
     fn blocks(&mut self, i: usize, position: u32) -> bool {
         self.tests[i].shapes += 1;
-        let shadow = &self.rays[i];
+        let query = self.queries.query(i);
         let triangle_ray = &self.triangle_rays[if self.triangle_rays.len() == 1 { 0 } else { i }];
-        let crossings = self.shapes.crossings(position, &shadow.ray, triangle_ray);
+        let crossings = self.shapes.crossings(position, &query.ray, triangle_ray);
         for &hit in crossings.as_slice() {
-            if !(self.t_min < hit.t && hit.t < shadow.t_end) {
+            if !(query.t_min < hit.t && hit.t < query.t_max) {
                 continue;
             }
             if !(self.see_through)(self.shapes.material(position)) {
@@ -223,44 +231,34 @@ impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
 }
 
 impl<F: Fn(u32) -> bool> Batch for ShadowBatch<'_, F> {
-    fn len(&self) -> usize {
-        self.rays.len()
-    }
-
-    fn query(&self, i: usize) -> Query {
-        Query { ray: self.rays[i].ray, t_min: self.t_min, t_max: self.rays[i].t_end }
-    }
-
-    #[inline(always)]
-    fn leaf_range<S: Simd>(&mut self, _simd: S, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
+    fn leaf_range(&mut self, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
         let blocked = (first..first + count).any(|position| self.blocks(i, position));
         if blocked { f64::NEG_INFINITY } else { t_max }
     }
 
-    #[inline(always)]
-    fn leaf_list<S: Simd>(&mut self, _simd: S, i: usize, positions: &[u32], t_max: f64) -> f64 {
+    fn leaf_list(&mut self, i: usize, positions: &[u32], t_max: f64) -> f64 {
         let blocked = positions.iter().any(|&position| self.blocks(i, position));
         if blocked { f64::NEG_INFINITY } else { t_max }
     }
 
-    #[inline(always)]
-    fn leaf_packet<S: Simd>(
-        &mut self,
-        simd: S,
-        packet: &mut Packet,
-        active: u32,
-        first: u32,
-        count: u32,
-    ) -> bool {
-        let shapes = self.shapes;
+    fn leaf_block(&mut self, narrow: &NarrowRay, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
+        let left = block(self.level, self.shapes, narrow, first, count);
+        let blocked = bits(left).any(|lane| self.blocks(i, first + lane));
+        if blocked { f64::NEG_INFINITY } else { t_max }
+    }
+
+    fn leaf_packet(&mut self, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
         let mut changed = false;
         for position in first..first + count {
-            shapes.sweep(simd, position, packet, active, |packet, group, lane| {
-                if self.blocks(packet.group(group).rays[lane] as usize, position) {
-                    packet.set_t_max(group, lane, f64::NEG_INFINITY);
-                    changed = true;
+            let lanes = sweep(self.level, self.shapes, position, packet, active);
+            for group in bits(active).map(|group| group as usize) {
+                for lane in bits(u32::from(lanes[group])).map(|lane| lane as usize) {
+                    if self.blocks(packet.group(group).rays[lane] as usize, position) {
+                        packet.set_t_max(group, lane, f64::NEG_INFINITY);
+                        changed = true;
+                    }
                 }
-            });
+            }
         }
         changed
     }

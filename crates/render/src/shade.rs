@@ -40,8 +40,8 @@ pub struct ShadePoint<'a> {
 impl<'a> ShadePoint<'a> {
     /// The point where `ray` met `nearest`.
     pub(crate) fn new(world: &'a World, ray: &Ray, nearest: &Nearest, filter: TextureFilter) -> Self {
-        let material = &world.materials[world.shapes.material(nearest.position) as usize];
-        let surface = world.shapes.surface(nearest.position, ray, nearest.hit);
+        let material = &world.materials[world.caster.shapes.material(nearest.position) as usize];
+        let surface = world.caster.shapes.surface(nearest.position, ray, nearest.hit);
         let procedural = &material.procedural;
         let plain = procedural.bumps.is_empty()
             && surface.in_object.shading_normal == surface.in_object.geometric_normal;
@@ -50,7 +50,7 @@ impl<'a> ShadePoint<'a> {
         } else {
             let normal = surface.in_object.shading_normal.normalize();
             let leaned = solid::bumped(&procedural.bumps, normal, surface.in_object.point);
-            world.shapes.frame(nearest.position).world_normal(leaned)
+            world.caster.shapes.frame(nearest.position).world_normal(leaned)
         };
         let image = material.texture.and_then(|number| world.textures.get(number as usize));
         let texture = image.map_or(Vec3::ONE, |image| image.color(surface.in_object.texcoord, filter))
@@ -97,7 +97,15 @@ impl<'a> ShadePoint<'a> {
         if specular == Vec3::ZERO {
             return Vec3::ZERO;
         }
-        specular * libm::pow(self.mirrored.dot(towards_light).max(0.0), self.material.shininess)
+        // What the power would give: by far the most points lie outside of the highlight.
+        let (cosine, shininess) = (self.mirrored.dot(towards_light), self.material.shininess);
+        if shininess == 0.0 {
+            return specular;
+        }
+        if cosine <= 0.0 && shininess > 0.0 {
+            return Vec3::ZERO;
+        }
+        specular * libm::pow(cosine.max(0.0), shininess)
     }
 
     /// The mirrored ray.

@@ -3,15 +3,13 @@
 //! A *position* is a place in the accelerator's order, so that a leaf is one block of memory; a *number* is the
 //! shape's place in the scene's file order, which decides ties.
 
-use crate::cull;
-use crate::cull::Cull;
+use crate::cull::Culls;
 use crate::cull::Spine;
 use crate::form::Form;
-use crate::form::Framed;
 use crate::form::Slot;
 use crate::form::axis_aligned;
-use dotray_accel::packet::Packet;
-use dotray_accel::simd::Simd;
+use dotray_accel::narrow::Frame;
+use dotray_geometry::Affine;
 use dotray_geometry::Cone;
 use dotray_geometry::Crossings;
 use dotray_geometry::Cuboid;
@@ -58,10 +56,13 @@ pub struct Shapes {
     cylinders: Vec<OrientedCylinder>,
     cones: Vec<OrientedCone>,
     triangles: Vec<[Vec3; 3]>,
-    framed_spheres: Vec<Framed<Sphere>>,
-    framed_cuboids: Vec<Framed<Cuboid>>,
-    framed_cylinders: Vec<Framed<Cylinder>>,
-    framed_cones: Vec<Framed<Cone>>,
+    framed_spheres: Vec<Sphere>,
+    framed_cuboids: Vec<Cuboid>,
+    framed_cylinders: Vec<Cylinder>,
+    framed_cones: Vec<Cone>,
+    /// Where single precision rules shapes out, for accelerators that ask for it.
+    cull_frame: Option<Frame>,
+    culls: Culls,
 }
 
 /// Shape `number` of the scene, in object coordinates, with its run.
@@ -80,9 +81,15 @@ pub fn run_of(runs: &[Run], number: u32) -> usize {
 }
 
 impl Shapes {
-    /// Starts with the scene's lists, without any shape baked.
-    pub fn new(runs: Vec<Run>, frames: Vec<Transform>, files: Vec<SceneFile>) -> Self {
-        Self { runs, frames, files, ..Self::default() }
+    /// Starts with the scene's lists, without any shape baked. With `cull_frame`, what rules shapes out in single
+    /// precision is laid down as well.
+    pub fn new(
+        runs: Vec<Run>,
+        frames: Vec<Transform>,
+        files: Vec<SceneFile>,
+        cull_frame: Option<Frame>,
+    ) -> Self {
+        Self { runs, frames, files, cull_frame, ..Self::default() }
     }
 
     /// Makes room for `count` shapes.
@@ -115,7 +122,6 @@ impl Shapes {
         let transform = self.frames[frame];
         let world_from_object = &transform.world_from_object;
         let similarity = if frame == 0 { Some(1.0) } else { transform.similarity_scale() };
-        let bounds = || shape.world_bounds(world_from_object);
         fn put<T>(list: &mut Vec<T>, form: Form, value: T) -> Slot {
             list.push(value);
             Slot::new(form, list.len() - 1)
@@ -127,52 +133,84 @@ impl Shapes {
                         .ok()
                 });
                 match in_world {
-                    Some(sphere) => put(&mut self.spheres, Form::Sphere, sphere),
-                    None => put(
-                        &mut self.framed_spheres,
-                        Form::FramedSphere,
-                        Framed::new(*sphere, bounds(), None),
-                    ),
+                    Some(sphere) => {
+                        self.cull_ball(sphere.center(), sphere.radius());
+                        put(&mut self.spheres, Form::Sphere, sphere)
+                    }
+                    None => {
+                        self.cull_box(shape, world_from_object);
+                        put(&mut self.framed_spheres, Form::FramedSphere, *sphere)
+                    }
                 }
             }
-            Shape::Cuboid(cuboid) => match axis_aligned(cuboid, &transform) {
-                Some(cuboid) => put(&mut self.cuboids, Form::Cuboid, cuboid),
-                None => {
-                    put(&mut self.framed_cuboids, Form::FramedCuboid, Framed::new(*cuboid, bounds(), None))
+            Shape::Cuboid(cuboid) => {
+                self.cull_box(shape, world_from_object);
+                match axis_aligned(cuboid, &transform) {
+                    Some(cuboid) => put(&mut self.cuboids, Form::Cuboid, cuboid),
+                    None => put(&mut self.framed_cuboids, Form::FramedCuboid, *cuboid),
                 }
-            },
+            }
             Shape::Cylinder(cylinder) => match similarity {
-                Some(scale) => put(
-                    &mut self.cylinders,
-                    Form::Cylinder,
-                    OrientedCylinder::from_object(cylinder, world_from_object, scale),
-                ),
+                Some(scale) => {
+                    let c = OrientedCylinder::from_object(cylinder, world_from_object, scale);
+                    self.cull_bar(&Spine::along(c.base(), c.axis(), c.radius(), c.height()));
+                    put(&mut self.cylinders, Form::Cylinder, c)
+                }
                 None => {
-                    let spine =
-                        Spine::new(world_from_object, &bounds(), cylinder.center(), cylinder.radius());
-                    put(
-                        &mut self.framed_cylinders,
-                        Form::FramedCylinder,
-                        Framed::new(*cylinder, bounds(), spine),
-                    )
+                    self.cull_framed_bar(shape, world_from_object, cylinder.center(), cylinder.radius());
+                    put(&mut self.framed_cylinders, Form::FramedCylinder, *cylinder)
                 }
             },
             Shape::Cone(cone) => match similarity {
-                Some(scale) => put(
-                    &mut self.cones,
-                    Form::Cone,
-                    OrientedCone::from_object(cone, world_from_object, scale),
-                ),
+                Some(scale) => {
+                    let c = OrientedCone::from_object(cone, world_from_object, scale);
+                    self.cull_bar(&Spine::along(c.base(), c.axis(), c.radius(), c.height()));
+                    put(&mut self.cones, Form::Cone, c)
+                }
                 None => {
-                    let spine = Spine::new(world_from_object, &bounds(), cone.center(), cone.radius());
-                    put(&mut self.framed_cones, Form::FramedCone, Framed::new(*cone, bounds(), spine))
+                    self.cull_framed_bar(shape, world_from_object, cone.center(), cone.radius());
+                    put(&mut self.framed_cones, Form::FramedCone, *cone)
                 }
             },
             Shape::Triangle(triangle) => {
-                let vertices = triangle.vertices().map(|v| world_from_object.transform_point3(v));
-                put(&mut self.triangles, Form::Triangle, vertices)
+                let corners = triangle.vertices().map(|v| world_from_object.transform_point3(v));
+                if let Some(frame) = &self.cull_frame {
+                    self.culls.put_triangle(frame, self.slots.len(), &corners);
+                }
+                put(&mut self.triangles, Form::Triangle, corners)
             }
         }
+    }
+
+    fn cull_ball(&mut self, center: Vec3, radius: f64) {
+        if let Some(frame) = &self.cull_frame {
+            self.culls.put_ball(frame, self.slots.len(), center, radius);
+        }
+    }
+
+    fn cull_box(&mut self, shape: &Shape, world_from_object: &Affine) {
+        if let Some(frame) = &self.cull_frame {
+            self.culls.put_box(frame, self.slots.len(), &shape.world_bounds(world_from_object));
+        }
+    }
+
+    fn cull_bar(&mut self, spine: &Spine) {
+        if let Some(frame) = &self.cull_frame {
+            self.culls.put_bar(frame, self.slots.len(), spine);
+        }
+    }
+
+    /// A cylinder or cone that a general map has squeezed.
+    fn cull_framed_bar(&mut self, shape: &Shape, world_from_object: &Affine, center: Vec3, radius: f64) {
+        match Spine::new(world_from_object, &shape.world_bounds(world_from_object), center, radius) {
+            Some(spine) => self.cull_bar(&spine),
+            None => self.cull_box(shape, world_from_object),
+        }
+    }
+
+    /// What rules shapes out in single precision; `None` where the accelerator does not ask for it.
+    pub(crate) fn culls(&self) -> Option<&Culls> {
+        self.cull_frame.as_ref().map(|_| &self.culls)
     }
 
     /// How many positions there are.
@@ -239,69 +277,14 @@ impl Shapes {
         }
     }
 
-    /// Calls `visit` with every lane of the groups `active` that may hit the shape at `position`.
-    #[inline(always)]
-    pub(crate) fn sweep<S: Simd>(
-        &self,
-        simd: S,
-        position: u32,
-        packet: &mut Packet,
-        active: u32,
-        visit: impl FnMut(&mut Packet, usize, usize),
-    ) {
-        let slot = self.slots[position as usize];
-        let index = slot.index();
-        let frame = *packet.frame();
-        match slot.form() {
-            Form::Sphere => {
-                sweep_with(simd, &cull::Ball::around(&frame, &self.spheres[index]), packet, active, visit);
-            }
-            Form::Triangle => {
-                sweep_with(simd, &cull::Corner::new(&frame, &self.triangles[index]), packet, active, visit);
-            }
-            Form::Cuboid => {
-                let block = cull::Block::new(&frame, &self.cuboids[index].bounds());
-                sweep_with(simd, &block, packet, active, visit);
-            }
-            Form::Cylinder => {
-                let c = &self.cylinders[index];
-                let bar = cull::Bar::new(&frame, c.base(), c.axis(), c.radius(), c.height());
-                sweep_with(simd, &bar, packet, active, visit);
-            }
-            Form::Cone => {
-                let c = &self.cones[index];
-                let bar = cull::Bar::new(&frame, c.base(), c.axis(), c.radius(), c.height());
-                sweep_with(simd, &bar, packet, active, visit);
-            }
-            Form::FramedSphere => {
-                let boxed = cull::Boxed::new(&frame, &self.framed_spheres[index].bounds, None);
-                sweep_with(simd, &boxed, packet, active, visit);
-            }
-            Form::FramedCuboid => {
-                let boxed = cull::Boxed::new(&frame, &self.framed_cuboids[index].bounds, None);
-                sweep_with(simd, &boxed, packet, active, visit);
-            }
-            Form::FramedCylinder => {
-                let framed = &self.framed_cylinders[index];
-                let boxed = cull::Boxed::new(&frame, &framed.bounds, framed.spine.as_ref());
-                sweep_with(simd, &boxed, packet, active, visit);
-            }
-            Form::FramedCone => {
-                let framed = &self.framed_cones[index];
-                let boxed = cull::Boxed::new(&frame, &framed.bounds, framed.spine.as_ref());
-                sweep_with(simd, &boxed, packet, active, visit);
-            }
-        }
-    }
-
     #[inline(never)]
     fn framed_crossings(&self, form: Form, index: usize, position: u32, ray: &Ray) -> Crossings {
         let ray_in_object = ray.transformed(&self.frame(position).object_from_world);
         match form {
-            Form::FramedSphere => self.framed_spheres[index].shape.crossings(&ray_in_object),
-            Form::FramedCuboid => self.framed_cuboids[index].shape.crossings(&ray_in_object),
-            Form::FramedCylinder => self.framed_cylinders[index].shape.crossings(&ray_in_object),
-            Form::FramedCone => self.framed_cones[index].shape.crossings(&ray_in_object),
+            Form::FramedSphere => self.framed_spheres[index].crossings(&ray_in_object),
+            Form::FramedCuboid => self.framed_cuboids[index].crossings(&ray_in_object),
+            Form::FramedCylinder => self.framed_cylinders[index].crossings(&ray_in_object),
+            Form::FramedCone => self.framed_cones[index].crossings(&ray_in_object),
             Form::Sphere | Form::Cuboid | Form::Cylinder | Form::Cone | Form::Triangle => Crossings::NONE,
         }
     }
@@ -348,6 +331,7 @@ impl Shapes {
     /// Lets go of the lists as written that nobody asks for any more, once every shape has been pushed: all
     /// materials, and the spheres and boxes that stand in no group, whose baked form is the same.
     pub fn finish(&mut self) {
+        self.culls.finish(self.slots.len());
         for (index, file) in self.files.iter_mut().enumerate() {
             let in_world = |kind: ShapeKind| {
                 let mut runs =
@@ -406,7 +390,8 @@ impl Shapes {
             + bytes(&self.framed_spheres)
             + bytes(&self.framed_cuboids)
             + bytes(&self.framed_cylinders)
-            + bytes(&self.framed_cones);
+            + bytes(&self.framed_cones)
+            + self.culls.memory();
         let written = self
             .files
             .iter()
@@ -421,27 +406,5 @@ impl Shapes {
             })
             .sum();
         (baked, written)
-    }
-}
-
-/// Calls `visit` with every lane of the groups `active` that the cull lets through.
-#[inline(always)]
-fn sweep_with<S: Simd>(
-    simd: S,
-    cull: &impl Cull,
-    packet: &mut Packet,
-    active: u32,
-    mut visit: impl FnMut(&mut Packet, usize, usize),
-) {
-    let mut groups = active;
-    while groups != 0 {
-        let group = groups.trailing_zeros() as usize;
-        groups &= groups - 1;
-        let mut lanes = cull.may_hit(simd, packet.group(group));
-        while lanes != 0 {
-            let lane = lanes.trailing_zeros() as usize;
-            lanes &= lanes - 1;
-            visit(packet, group, lane);
-        }
     }
 }

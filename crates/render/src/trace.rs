@@ -10,12 +10,13 @@ use crate::options::Shadows;
 use crate::query::Between;
 use crate::query::NearestBatch;
 use crate::query::ShadowBatch;
-use crate::query::ShadowRay;
 use crate::query::Tests;
 use crate::shade::ShadePoint;
 use crate::stats::Stats;
 use crate::world::World;
+use dotray_accel::ENDLESS;
 use dotray_accel::Level;
+use dotray_accel::Queries;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
 
@@ -90,11 +91,13 @@ impl<'a> Tracer<'a> {
     /// What each ray meets first, with its surface.
     fn meet(&mut self, rays: &[Ray], together: bool) -> Vec<Met<'a>> {
         let world = self.world;
-        let mut batch = NearestBatch::new(&world.shapes, rays, world.ray_eps);
+        let t_min = [world.ray_eps];
+        let queries = Queries { rays, t_min: &t_min, t_max: ENDLESS };
+        let mut batch = NearestBatch::new(self.level, &world.caster.shapes, queries);
         if together {
-            world.accelerator.walk_together(self.level, &mut batch);
+            world.caster.accelerator.walk_together(self.level, &queries, &mut batch);
         } else {
-            world.accelerator.walk(self.level, &mut batch);
+            world.caster.accelerator.walk(self.level, &queries, &mut batch);
         }
         count(&mut self.stats, &batch.tests);
         let filter = self.options.texture_filter;
@@ -133,25 +136,26 @@ impl<'a> Tracer<'a> {
         sums: &mut [Vec3],
     ) {
         let mut rays = Vec::with_capacity(met.len());
+        let mut ends = Vec::with_capacity(met.len());
         let mut waiting = Vec::with_capacity(met.len());
         for Met { index, point } in met {
             let Some(incident) = incident_at(point.point) else { continue };
             let lit = point.lit(&incident);
             // Where the lamp adds nothing, nobody asks what lies between.
             if lit != Vec3::ZERO {
-                let ray = Ray::new(point.point, incident.towards);
-                rays.push(ShadowRay { ray, t_end: incident.distance - self.world.ray_eps });
+                rays.push(Ray::new(point.point, incident.towards));
+                ends.push(incident.distance - self.world.ray_eps);
                 waiting.push((*index, lit));
             }
         }
-        let filters = self.filters(&rays);
+        let filters = self.filters(&rays, &ends);
         for (&(index, lit), filter) in waiting.iter().zip(filters) {
             sums[index] += lit * filter;
         }
     }
 
     /// S_i of each shadow ray.
-    fn filters(&mut self, rays: &[ShadowRay]) -> Vec<Vec3> {
+    fn filters(&mut self, rays: &[Ray], ends: &[f64]) -> Vec<Vec3> {
         let world = self.world;
         let all_opaque = match self.options.shadows {
             Shadows::Off => return vec![Vec3::ONE; rays.len()],
@@ -161,14 +165,16 @@ impl<'a> Tracer<'a> {
         self.stats.shadow_rays += rays.len() as u64;
         let transmission = |material: u32| world.materials[material as usize].transmission;
         let see_through = |material| !all_opaque && transmission(material) != Vec3::ZERO;
-        let mut batch = ShadowBatch::new(&world.shapes, rays, world.ray_eps, see_through);
-        world.accelerator.walk_together(self.level, &mut batch);
+        let t_min = [world.ray_eps];
+        let queries = Queries { rays, t_min: &t_min, t_max: ends };
+        let mut batch = ShadowBatch::new(self.level, &world.caster.shapes, queries, see_through);
+        world.caster.accelerator.walk_together(self.level, &queries, &mut batch);
         batch.finish();
         count(&mut self.stats, &batch.tests);
         let filter = |between: &Between| match between {
             Between::Blocked(_) => Vec3::ZERO,
             Between::Crossed(crossings) => crossings.iter().fold(Vec3::ONE, |product, crossing| {
-                product * transmission(world.shapes.material(crossing.position))
+                product * transmission(world.caster.shapes.material(crossing.position))
             }),
         };
         batch.found.iter().map(filter).collect()

@@ -114,9 +114,14 @@ impl Run {
 }
 
 impl Resolved {
+    /// The number in [`Resolved::materials`] of the default material.
+    pub fn default_material(&self) -> u32 {
+        self.materials.len().saturating_sub(1) as u32
+    }
+
     /// The number in [`Resolved::materials`] of a shape's material as its file numbers it (-1: the default).
     #[inline]
     pub fn material_index(&self, run: &Run, written: i32) -> u32 {
-        run.material(written).unwrap_or(self.materials.len() as u32 - 1)
+        run.material(written).unwrap_or(self.default_material())
     }
 }

@@ -9,9 +9,11 @@ use crate::batch::Batch;
 use crate::bvh::wide::Child;
 use crate::bvh::wide::Tree;
 use crate::bvh::wide::WIDTH;
-use crate::clip::ClippedRay;
 use crate::packet::Beam;
+use crate::packet::GROUPS;
+use crate::packet::LANES;
 use crate::packet::Packet;
+use crate::query::Queries;
 use crate::simd::Simd;
 
 /// A child that waits for some groups.
@@ -29,43 +31,35 @@ impl Waiting {
 
 /// Walks every ray of the batch through the tree, in packets of rays with equal signs.
 #[inline(always)]
-pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, batch: &mut B) {
+pub fn walk<S: Simd>(simd: S, tree: &Tree, queries: &Queries<'_>, batch: &mut dyn Batch) {
     let mut stack = vec![Waiting::NOBODY; tree.stack + WIDTH + 1];
     let mut packet = Packet::new(&tree.frame);
     let mut octants: [Vec<u32>; 8] = Default::default();
-    for i in 0..batch.len() {
-        let direction = batch.query(i).ray.direction;
+    for (i, ray) in queries.rays.iter().enumerate() {
+        let direction = ray.direction;
         let octant =
             (0..3).map(|axis| usize::from(direction[axis].is_sign_negative()) << axis).sum::<usize>();
         octants[octant & 7].push(i as u32);
     }
     for rays in &octants {
-        for &ray in rays {
-            let query = batch.query(ray as usize);
-            match ClippedRay::new(&query, tree.frame.scene()) {
-                Some(clipped) => packet.push(&tree.frame, ray, &query, &clipped),
-                None => batch.finished(ray as usize, 1),
+        for rays in rays.chunks(GROUPS * LANES) {
+            for group in rays.chunks(LANES) {
+                packet.push(simd, queries, group);
             }
-            if packet.is_full() {
-                walk_packet(simd, tree, &mut stack, &mut packet, batch);
-            }
+            walk_packet(simd, tree, &mut stack, &mut packet, batch);
         }
-        walk_packet(simd, tree, &mut stack, &mut packet, batch);
     }
 }
 
 /// Walks one packet, tells the batch what it cost, and empties it.
 #[inline(always)]
-fn walk_packet<S: Simd, B: Batch>(
+fn walk_packet<S: Simd>(
     simd: S,
     tree: &Tree,
     stack: &mut [Waiting],
     packet: &mut Packet,
-    batch: &mut B,
+    batch: &mut dyn Batch,
 ) {
-    if packet.is_empty() {
-        return;
-    }
     let tests = descend(simd, tree, stack, packet, batch);
     let count = packet.count();
     for (index, ray) in packet.groups().iter().flat_map(|group| group.rays).take(count).enumerate() {
@@ -78,12 +72,12 @@ fn walk_packet<S: Simd, B: Batch>(
 
 /// The walk proper; returns the number of box tests.
 #[inline(always)]
-fn descend<S: Simd, B: Batch>(
+fn descend<S: Simd>(
     simd: S,
     tree: &Tree,
     stack: &mut [Waiting],
     packet: &mut Packet,
-    batch: &mut B,
+    batch: &mut dyn Batch,
 ) -> u64 {
     let beam = Beam::around(packet);
     let (mut alive, mut bound) = packet.alive(simd);
@@ -99,7 +93,7 @@ fn descend<S: Simd, B: Batch>(
         }
         if child.is_leaf() {
             let (first, count) = child.items();
-            if batch.leaf_packet(simd, packet, active, first, count) {
+            if batch.leaf_packet(packet, active, first, count) {
                 (alive, bound) = packet.alive(simd);
             }
             continue;

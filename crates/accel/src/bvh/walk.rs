@@ -7,6 +7,8 @@ use crate::bvh::wide::WIDTH;
 use crate::bvh::wide::WideNode;
 use crate::clip::ClippedRay;
 use crate::narrow::NarrowRay;
+use crate::query::Queries;
+use crate::query::Query;
 use crate::simd::Simd;
 use crate::simd::f32x8;
 use crate::simd::prelude::*;
@@ -73,22 +75,28 @@ fn waiting(enter: f32, child: Child) -> u64 {
 /// Tried and dropped: four rays in turn, a step each, so that one computes while another waits for memory. Random rays
 /// over a million items gained 25 to 35 %, but coherent ones lost 10 to 30 %.
 #[inline(always)]
-pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &mut B) {
-    for i in 0..batch.len() {
-        let tests = walk_ray(simd, tree, stack, batch, i);
+pub fn walk<S: Simd>(simd: S, tree: &Tree, stack: &mut [u64], queries: &Queries<'_>, batch: &mut dyn Batch) {
+    for i in 0..queries.len() {
+        let tests = walk_ray(simd, tree, stack, &queries.query(i), batch, i);
         batch.finished(i, tests);
     }
 }
 
 /// Walks one ray and returns how many boxes it was tested against.
 #[inline(always)]
-fn walk_ray<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &mut B, i: usize) -> u64 {
-    let query = batch.query(i);
-    let Some(clipped) = ClippedRay::new(&query, tree.frame.scene()) else { return 1 };
-    let narrow = tree.frame.narrow_ray(&clipped);
+fn walk_ray<S: Simd>(
+    simd: S,
+    tree: &Tree,
+    stack: &mut [u64],
+    query: &Query,
+    batch: &mut dyn Batch,
+    i: usize,
+) -> u64 {
+    let Some(clipped) = ClippedRay::new(query, tree.frame.scene()) else { return 1 };
+    let mut narrow = tree.frame.narrow_ray(&clipped);
     let ray = SpreadRay::new(simd, &narrow);
     let mut t_max = query.t_max;
-    let mut bound = narrow.bound(t_max);
+    narrow.set_bound(t_max);
     let mut nodes = 0;
     let mut top = 0;
     let mut child = tree.root;
@@ -96,19 +104,19 @@ fn walk_ray<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &
         if child.is_leaf() {
             // A leaf: the caller tests the items, and may bring the bound nearer.
             let (first, count) = child.items();
-            let answer = batch.leaf_range(simd, i, first, count, t_max);
+            let answer = batch.leaf_block(&narrow, i, first, count, t_max);
             if answer == f64::NEG_INFINITY {
                 break;
             }
             if answer < t_max {
                 t_max = answer;
-                bound = narrow.bound(t_max);
+                narrow.set_bound(t_max);
             }
         } else {
             // A node: the boxes that the ray meets go onto the stack, the nearest on top.
             let node = &tree.nodes[child.0 as usize];
             nodes += 1;
-            let (mask, enter) = ray.meets(simd, node, bound);
+            let (mask, enter) = ray.meets(simd, node, narrow.bound);
             if mask != 0 {
                 (child, top) = stack_children(stack, top, node, mask, &enter);
                 continue;
@@ -121,7 +129,7 @@ fn walk_ray<S: Simd, B: Batch>(simd: S, tree: &Tree, stack: &mut [u64], batch: &
             }
             top -= 1;
             let next = stack[top];
-            if f32::from_bits((next >> 32) as u32) <= bound {
+            if f32::from_bits((next >> 32) as u32) <= narrow.bound {
                 child = Child(next as u32);
                 break;
             }
@@ -195,7 +203,6 @@ mod tests {
     use super::*;
     use crate::narrow::Frame;
     use crate::narrow::Slack;
-    use crate::query::Query;
     use crate::simd::available_levels;
     use crate::simd::dispatch;
     use dotray_geometry::Aabb;
@@ -240,7 +247,7 @@ mod tests {
             let mut node = WideNode::EMPTY;
             node.set(0, &frame.narrow(&Aabb::new(center - radius, center + radius)), Child::leaf(0, 1));
             let met = narrow.is_some_and(|ray| {
-                let bound = ray.bound(t);
+                let bound = ray.bound_at(t);
                 dispatch!(level, simd => SpreadRay::new(simd, &ray).meets(simd, &node, bound).0) == 1
             });
             hidden += u32::from(!met);

@@ -1,0 +1,175 @@
+//! Rays against shapes, without a picture: what a program needs that casts rays of its own.
+
+use crate::options::PrepareOptions;
+use crate::query::Between;
+use crate::query::Nearest;
+use crate::query::NearestBatch;
+use crate::query::ShadowBatch;
+use crate::shapes;
+use crate::shapes::Shapes;
+use crate::shapes::WorldSurface;
+use dotray_accel::Accelerator;
+use dotray_accel::Boxes;
+use dotray_accel::GroupEvent;
+use dotray_accel::Level;
+use dotray_accel::Queries;
+use dotray_accel::Settings;
+use dotray_accel::narrow::Frame;
+use dotray_accel::simd::level;
+use dotray_geometry::Aabb;
+use dotray_geometry::Ray;
+use dotray_geometry::Transform;
+use dotray_scene::Resolved;
+use dotray_scene::model::SceneFile;
+use dotray_scene::resolved::Run;
+use dotray_scene::resolved::TreeEvent;
+use std::time::Instant;
+
+/// Baked shapes and the accelerator over them.
+///
+/// ```
+/// use dotray_accel::{ENDLESS, Queries};
+/// use dotray_geometry::{Ray, Vec3};
+/// use dotray_render::{Caster, PrepareOptions};
+/// use dotray_scene::{files, load, resolve};
+///
+/// let text = "#camera 0 0 0 0 0 -1 0 1 0 0.5\n#shape_sphere -1 0 0 -5 1";
+/// let options = load::LoadOptions::default();
+/// let scene = load::load_text("one.ray", text, &files::Disk, &options).scene.expect("a scene");
+/// let resolved = resolve::resolve(scene).resolved.expect("resolved");
+/// let caster = Caster::build(resolved, &PrepareOptions::default());
+/// let rays = [Ray::new(Vec3::ZERO, Vec3::NEG_Z), Ray::new(Vec3::ZERO, Vec3::Z)];
+/// let found = caster.nearest(&Queries { rays: &rays, t_min: &[0.0], t_max: ENDLESS }, true);
+/// assert_eq!(found.iter().map(|nearest| nearest.map(|n| n.hit.t)).collect::<Vec<_>>(), [Some(4.0), None]);
+/// ```
+#[derive(Debug)]
+pub struct Caster {
+    pub(crate) shapes: Shapes,
+    pub(crate) accelerator: Accelerator,
+    seconds: Vec<(&'static str, f64)>,
+    level: Level,
+}
+
+/// The shapes' boxes in the world, by shape number.
+struct ShapeBoxes<'a> {
+    runs: &'a [Run],
+    frames: &'a [Transform],
+    files: &'a [SceneFile],
+    count: u32,
+}
+
+impl Boxes for ShapeBoxes<'_> {
+    fn len(&self) -> u32 {
+        self.count
+    }
+
+    fn bounds(&self, item: u32) -> Aabb {
+        let (_, run, shape) = shapes::written_shape(self.runs, self.files, item);
+        shape.world_bounds(&self.frames[run.frame as usize].world_from_object)
+    }
+}
+
+impl Caster {
+    /// Builds the accelerator over a scene's shapes and bakes them; the scene's lights, textures and camera are not
+    /// asked for.
+    ///
+    /// # Panics
+    /// Where there are more than [`dotray_accel::MAX_ITEMS`] shapes.
+    pub fn build(resolved: Resolved, options: &PrepareOptions) -> Self {
+        let default_material = resolved.default_material();
+        Self::with_default(resolved, default_material, options)
+    }
+
+    /// The same, where the materials have been taken out of the scene.
+    pub(crate) fn with_default(resolved: Resolved, default_material: u32, options: &PrepareOptions) -> Self {
+        let start = Instant::now();
+        let boxes = ShapeBoxes {
+            runs: &resolved.runs,
+            frames: &resolved.frames,
+            files: &resolved.files,
+            count: resolved.shape_count,
+        };
+        let groups = group_events(&resolved);
+        let settings = Settings { quality: options.quality };
+        let build = || Accelerator::build(options.accel, &boxes, &groups, &settings);
+        let built = match options.threads.map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build()) {
+            Some(Ok(pool)) => pool.install(build),
+            Some(Err(_)) | None => build(),
+        };
+        let mut seconds = vec![("build", start.elapsed().as_secs_f64())];
+
+        let start = Instant::now();
+        let cull_frame = built.accelerator.shows_blocks().then(|| Frame::around(built.accelerator.bounds()));
+        let mut shapes = Shapes::new(resolved.runs, resolved.frames, resolved.files, cull_frame);
+        shapes.reserve(resolved.shape_count as usize);
+        let material = |run: &Run, written: i32| run.material(written).unwrap_or(default_material);
+        match &built.order {
+            Some(order) => order.iter().for_each(|&number| shapes.push(number, material)),
+            None => (0..resolved.shape_count).for_each(|number| shapes.push(number, material)),
+        }
+        shapes.finish();
+        seconds.push(("bake", start.elapsed().as_secs_f64()));
+        Self { shapes, accelerator: built.accelerator, seconds, level: level() }
+    }
+
+    /// What each ray meets first. `together` says that successive rays start and run alike (eye rays of neighbouring
+    /// pixels, shadow rays to one light): they then share most of the work. The answers are the same.
+    pub fn nearest(&self, queries: &Queries<'_>, together: bool) -> Vec<Option<Nearest>> {
+        let mut batch = NearestBatch::new(self.level, &self.shapes, *queries);
+        if together {
+            self.accelerator.walk_together(self.level, queries, &mut batch);
+        } else {
+            self.accelerator.walk(self.level, queries, &mut batch);
+        }
+        batch.found
+    }
+
+    /// Whether anything lies on each ray; `together` as for [`Caster::nearest`].
+    pub fn occluded(&self, queries: &Queries<'_>, together: bool) -> Vec<bool> {
+        let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| false);
+        if together {
+            self.accelerator.walk_together(self.level, queries, &mut batch);
+        } else {
+            self.accelerator.walk(self.level, queries, &mut batch);
+        }
+        batch.found.iter().map(|between| matches!(between, Between::Blocked(_))).collect()
+    }
+
+    /// The surface that `ray` met at `nearest`.
+    pub fn surface(&self, ray: &Ray, nearest: &Nearest) -> WorldSurface {
+        self.shapes.surface(nearest.position, ray, nearest.hit)
+    }
+
+    /// How many shapes there are, instances counted as often as they stand.
+    pub fn shape_count(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// The box around all shapes; empty without any.
+    pub fn bounds(&self) -> Aabb {
+        self.accelerator.bounds()
+    }
+
+    /// The bytes of shapes and accelerator.
+    pub fn memory(&self) -> u64 {
+        let (baked, written) = self.shapes.memory();
+        baked + written + self.accelerator.memory() as u64
+    }
+
+    /// What building took, by stage.
+    pub fn seconds(&self) -> &[(&'static str, f64)] {
+        &self.seconds
+    }
+}
+
+fn group_events(resolved: &Resolved) -> Vec<GroupEvent> {
+    let event = |event: &TreeEvent| match *event {
+        TreeEvent::Open => GroupEvent::Open,
+        TreeEvent::Close => GroupEvent::Close,
+        TreeEvent::Run(index) => {
+            let run = &resolved.runs[index as usize];
+            GroupEvent::Items { first: run.first_shape, count: run.count }
+        }
+    };
+    resolved.tree.iter().map(event).collect()
+}
