@@ -1,10 +1,12 @@
 //! Rays against shapes, without a picture: what a program needs that casts rays of its own.
 
 use crate::options::PrepareOptions;
-use crate::query::Between;
 use crate::query::Nearest;
 use crate::query::NearestBatch;
+use crate::query::NearestBuffers;
 use crate::query::ShadowBatch;
+use crate::query::ShadowBuffers;
+use crate::query::UNBLOCKED;
 use crate::shapes;
 use crate::shapes::Shapes;
 use crate::shapes::WorldSurface;
@@ -115,24 +117,26 @@ impl Caster {
     /// What each ray meets first. `together` says that successive rays start and run alike (eye rays of neighbouring
     /// pixels, shadow rays to one light): they then share most of the work. The answers are the same.
     pub fn nearest(&self, queries: &Queries<'_>, together: bool) -> Vec<Option<Nearest>> {
-        let mut batch = NearestBatch::new(self.level, &self.shapes, *queries);
+        let mut buffers = NearestBuffers::default();
+        let mut batch = NearestBatch::new(self.level, &self.shapes, *queries, &mut buffers);
         if together {
             self.accelerator.walk_together(self.level, queries, &mut batch);
         } else {
             self.accelerator.walk(self.level, queries, &mut batch);
         }
-        batch.found
+        buffers.found
     }
 
     /// Whether anything lies on each ray; `together` as for [`Caster::nearest`].
     pub fn occluded(&self, queries: &Queries<'_>, together: bool) -> Vec<bool> {
-        let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| false);
+        let mut buffers = ShadowBuffers::default();
+        let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| false, &mut buffers);
         if together {
             self.accelerator.walk_together(self.level, queries, &mut batch);
         } else {
             self.accelerator.walk(self.level, queries, &mut batch);
         }
-        batch.found.iter().map(|between| matches!(between, Between::Blocked(_))).collect()
+        buffers.blockers.iter().map(|&blocker| blocker != UNBLOCKED).collect()
     }
 
     /// The surface that `ray` met at `nearest`.

@@ -32,11 +32,9 @@ pub struct Tests {
     pub shapes: u64,
 }
 
-/// The nearest hits of many rays.
-pub struct NearestBatch<'a> {
-    level: Level,
-    shapes: &'a Shapes,
-    queries: Queries<'a>,
+/// What the nearest hits of many rays are found in; used again and again, lest every stream allocate.
+#[derive(Debug, Default)]
+pub struct NearestBuffers {
     triangle_rays: Vec<TriangleRay>,
     /// The answers.
     pub found: Vec<Option<Nearest>>,
@@ -44,36 +42,53 @@ pub struct NearestBatch<'a> {
     pub tests: Vec<Tests>,
 }
 
-/// One prepared ray for each ray where there are triangles, else one that nobody looks at.
-fn prepare(shapes: &Shapes, rays: &[Ray]) -> Vec<TriangleRay> {
+/// The nearest hits of many rays.
+pub struct NearestBatch<'a> {
+    level: Level,
+    shapes: &'a Shapes,
+    queries: Queries<'a>,
+    buffers: &'a mut NearestBuffers,
+}
+
+/// Prepares each ray where there are triangles, else one that nobody looks at.
+fn prepare(shapes: &Shapes, rays: &[Ray], prepared: &mut Vec<TriangleRay>) {
     let needed = if shapes.has_triangles() { usize::MAX } else { 1 };
-    rays.iter().take(needed).map(TriangleRay::new).collect()
+    prepared.clear();
+    prepared.extend(rays.iter().take(needed).map(TriangleRay::new));
+}
+
+/// Fills a list anew.
+fn refill<T: Clone>(list: &mut Vec<T>, len: usize, value: T) {
+    list.clear();
+    list.resize(len, value);
 }
 
 impl<'a> NearestBatch<'a> {
     /// The question for these rays.
-    pub fn new(level: Level, shapes: &'a Shapes, queries: Queries<'a>) -> Self {
-        Self {
-            level,
-            shapes,
-            queries,
-            triangle_rays: prepare(shapes, queries.rays),
-            found: vec![None; queries.len()],
-            tests: vec![Tests::default(); queries.len()],
-        }
+    pub fn new(
+        level: Level,
+        shapes: &'a Shapes,
+        queries: Queries<'a>,
+        buffers: &'a mut NearestBuffers,
+    ) -> Self {
+        prepare(shapes, queries.rays, &mut buffers.triangle_rays);
+        refill(&mut buffers.found, queries.len(), None);
+        refill(&mut buffers.tests, queries.len(), Tests::default());
+        Self { level, shapes, queries, buffers }
     }
 
     /// Tests one shape; answers with the new upper bound of t.
     fn test(&mut self, i: usize, position: u32, t_max: f64) -> f64 {
-        self.tests[i].shapes += 1;
-        let triangle_ray = &self.triangle_rays[if self.triangle_rays.len() == 1 { 0 } else { i }];
+        let buffers = &mut *self.buffers;
+        buffers.tests[i].shapes += 1;
+        let triangle_ray = &buffers.triangle_rays[if buffers.triangle_rays.len() == 1 { 0 } else { i }];
         let query = self.queries.query(i);
         let crossings = self.shapes.crossings(position, &query.ray, triangle_ray);
         let Some(hit) = crossings.first_within(query.t_min, t_max) else { return t_max };
         let number = self.shapes.number(position);
         // An exact tie goes to the shape that stands first in the file.
-        if self.found[i].is_none_or(|best| hit.t < best.hit.t || number < best.number) {
-            self.found[i] = Some(Nearest { position, number, hit });
+        if buffers.found[i].is_none_or(|best| hit.t < best.hit.t || number < best.number) {
+            buffers.found[i] = Some(Nearest { position, number, hit });
             return hit.t;
         }
         t_max
@@ -113,7 +128,7 @@ impl Batch for NearestBatch<'_> {
     }
 
     fn finished(&mut self, i: usize, box_tests: u64) {
-        self.tests[i].boxes += box_tests;
+        self.buffers.tests[i].boxes += box_tests;
     }
 }
 
@@ -147,6 +162,8 @@ fn sweep(level: Level, shapes: &Shapes, position: u32, packet: &Packet, active: 
 /// A see-through surface that a shadow ray crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
+    /// The shadow ray's place in its stream.
+    pub ray: u32,
     /// Where.
     pub hit: Hit,
     /// The shape's number in file order.
@@ -155,13 +172,21 @@ pub struct Crossing {
     pub position: u32,
 }
 
-/// What lies between points and a light.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Between {
-    /// An opaque surface: the position of one of those (which one depends on the accelerator).
-    Blocked(u32),
-    /// Only see-through surfaces: each crossing once, nearest first.
-    Crossed(Vec<Crossing>),
+/// The blocker of a ray that nothing opaque blocks.
+pub const UNBLOCKED: u32 = u32::MAX;
+
+/// What lies between points and a light; used again and again, lest every stream allocate.
+#[derive(Debug, Default)]
+pub struct ShadowBuffers {
+    triangle_rays: Vec<TriangleRay>,
+    /// The position of an opaque shape that blocks each ray (which one of several depends on the accelerator), or
+    /// [`UNBLOCKED`].
+    pub blockers: Vec<u32>,
+    /// The see-through surfaces that rays cross, each once, ray by ray and nearest first; of blocked rays perhaps
+    /// not all.
+    pub crossings: Vec<Crossing>,
+    /// What each ray cost.
+    pub tests: Vec<Tests>,
 }
 
 /// The occlusion of many shadow rays.
@@ -169,62 +194,54 @@ pub struct ShadowBatch<'a, F> {
     level: Level,
     shapes: &'a Shapes,
     queries: Queries<'a>,
-    triangle_rays: Vec<TriangleRay>,
     see_through: F,
-    /// The answers; complete after [`ShadowBatch::finish`].
-    pub found: Vec<Between>,
-    /// What each ray cost.
-    pub tests: Vec<Tests>,
+    buffers: &'a mut ShadowBuffers,
 }
 
 impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
     /// The question for these rays; `see_through` says of a material whether light passes.
-    pub fn new(level: Level, shapes: &'a Shapes, queries: Queries<'a>, see_through: F) -> Self {
-        Self {
-            level,
-            shapes,
-            queries,
-            triangle_rays: prepare(shapes, queries.rays),
-            see_through,
-            found: vec![Between::Crossed(Vec::new()); queries.len()],
-            tests: vec![Tests::default(); queries.len()],
-        }
+    pub fn new(
+        level: Level,
+        shapes: &'a Shapes,
+        queries: Queries<'a>,
+        see_through: F,
+        buffers: &'a mut ShadowBuffers,
+    ) -> Self {
+        prepare(shapes, queries.rays, &mut buffers.triangle_rays);
+        refill(&mut buffers.blockers, queries.len(), UNBLOCKED);
+        buffers.crossings.clear();
+        refill(&mut buffers.tests, queries.len(), Tests::default());
+        Self { level, shapes, queries, see_through, buffers }
     }
 
     /// Brings the crossings into an order that does not depend on the accelerator, each once: octree and BSP show
     /// a shape as often as they cut it.
     pub fn finish(&mut self) {
-        for found in &mut self.found {
-            if let Between::Crossed(crossings) = found {
-                crossings.sort_by(|a, b| {
-                    a.hit
-                        .t
-                        .total_cmp(&b.hit.t)
-                        .then(a.number.cmp(&b.number))
-                        .then(a.hit.face.cmp(&b.hit.face))
-                });
-                crossings.dedup();
-            }
-        }
+        let crossings = &mut self.buffers.crossings;
+        crossings.sort_by(|a, b| {
+            let by_ray = a.ray.cmp(&b.ray).then(a.hit.t.total_cmp(&b.hit.t));
+            by_ray.then(a.number.cmp(&b.number)).then(a.hit.face.cmp(&b.hit.face))
+        });
+        crossings.dedup();
     }
 
     /// Tests one shape; answers whether it blocks the ray.
     fn blocks(&mut self, i: usize, position: u32) -> bool {
-        self.tests[i].shapes += 1;
+        let buffers = &mut *self.buffers;
+        buffers.tests[i].shapes += 1;
         let query = self.queries.query(i);
-        let triangle_ray = &self.triangle_rays[if self.triangle_rays.len() == 1 { 0 } else { i }];
+        let triangle_ray = &buffers.triangle_rays[if buffers.triangle_rays.len() == 1 { 0 } else { i }];
         let crossings = self.shapes.crossings(position, &query.ray, triangle_ray);
         for &hit in crossings.as_slice() {
             if !(query.t_min < hit.t && hit.t < query.t_max) {
                 continue;
             }
             if !(self.see_through)(self.shapes.material(position)) {
-                self.found[i] = Between::Blocked(position);
+                buffers.blockers[i] = position;
                 return true;
             }
-            if let Between::Crossed(list) = &mut self.found[i] {
-                list.push(Crossing { hit, number: self.shapes.number(position), position });
-            }
+            let number = self.shapes.number(position);
+            buffers.crossings.push(Crossing { ray: i as u32, hit, number, position });
         }
         false
     }
@@ -264,6 +281,6 @@ impl<F: Fn(u32) -> bool> Batch for ShadowBatch<'_, F> {
     }
 
     fn finished(&mut self, i: usize, box_tests: u64) {
-        self.tests[i].boxes += box_tests;
+        self.buffers.tests[i].boxes += box_tests;
     }
 }

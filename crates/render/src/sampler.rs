@@ -59,6 +59,9 @@ impl Block {
 /// The centres of n × n sub-pixels of each pixel, pixel by pixel.
 pub fn grid_places(pixels: &[(u32, u32)], n: u32) -> Vec<(f64, f64)> {
     let at = |whole: u32, part: u32| f64::from(whole) + (f64::from(part) + 0.5) / f64::from(n);
+    if n == 1 {
+        return pixels.iter().map(|&(i, j)| (f64::from(i) + 0.5, f64::from(j) + 0.5)).collect();
+    }
     let mut places = Vec::with_capacity(pixels.len() * (n * n) as usize);
     for &(i, j) in pixels {
         places.extend((0..n).flat_map(|b| (0..n).map(move |a| (at(i, a), at(j, b)))));
@@ -67,7 +70,10 @@ pub fn grid_places(pixels: &[(u32, u32)], n: u32) -> Vec<(f64, f64)> {
 }
 
 /// The mean of each pixel's n × n colours.
-pub fn grid_means(colors: &[Vec3], n: u32) -> Vec<Vec3> {
+pub fn grid_means(colors: Vec<Vec3>, n: u32) -> Vec<Vec3> {
+    if n == 1 {
+        return colors;
+    }
     let count = (n * n) as usize;
     colors.chunks_exact(count).map(|samples| samples.iter().sum::<Vec3>() / count as f64).collect()
 }

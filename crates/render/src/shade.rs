@@ -50,7 +50,7 @@ impl<'a> ShadePoint<'a> {
         } else {
             let normal = surface.in_object.shading_normal.normalize();
             let leaned = solid::bumped(&procedural.bumps, normal, surface.in_object.point);
-            world.caster.shapes.frame(nearest.position).world_normal(leaned)
+            world.caster.shapes.world_normal(nearest.position, leaned)
         };
         let image = material.texture.and_then(|number| world.textures.get(number as usize));
         let texture = image.map_or(Vec3::ONE, |image| image.color(surface.in_object.texcoord, filter))

@@ -252,6 +252,15 @@ impl Shapes {
         &self.frames[self.run(position).frame as usize]
     }
 
+    /// A unit normal of the shape's object space in the world.
+    #[inline]
+    pub fn world_normal(&self, position: u32, normal_in_object: Vec3) -> Vec3 {
+        match self.run(position).frame {
+            0 => normal_in_object,
+            frame => self.frames[frame as usize].world_normal(normal_in_object),
+        }
+    }
+
     /// The files as written.
     pub fn files(&self) -> &[SceneFile] {
         &self.files
@@ -294,7 +303,9 @@ impl Shapes {
         let run = self.run(position);
         let shape = self.in_object(position, run);
         let frame = &self.frames[run.frame as usize];
-        if let Shape::Triangle(triangle) = &shape {
+        if let Shape::Triangle(triangle) = &shape
+            && run.frame != 0
+        {
             return self.triangle_surface(position, triangle, frame, ray);
         }
         if run.frame == 0 {
@@ -324,7 +335,11 @@ impl Shapes {
             | Form::FramedSphere
             | Form::FramedCuboid
             | Form::FramedCylinder
-            | Form::FramedCone => written_shape(&self.runs, &self.files, self.number(position)).2,
+            | Form::FramedCone => {
+                let entry = (run.first + (self.number(position) - run.first_shape)) as usize;
+                let shape = self.files[run.file.0 as usize].shape(run.kind, entry);
+                shape.expect("a resolved run names shapes only")
+            }
         }
     }
 

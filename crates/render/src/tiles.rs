@@ -172,7 +172,7 @@ impl Job<'_> {
         for pixels in block.pixels().chunks(at_once) {
             let places = sampler::grid_places(pixels, n);
             let rays: Vec<Ray> = places.iter().map(|&(x, y)| self.camera.ray(x, y)).collect();
-            colors.append(&mut sampler::grid_means(&tracer.colors(&rays), n));
+            colors.append(&mut sampler::grid_means(tracer.colors(&rays), n));
         }
         colors
     }
@@ -193,10 +193,12 @@ impl Job<'_> {
 
     fn store(&self, block: Block, colors: &[Vec3], stats: &Stats) {
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
+        let width = self.window.width as usize;
+        let pixels = film.image.samples_mut().as_chunks_mut::<3>().0;
         for ((i, j), color) in block.pixels().into_iter().zip(colors) {
             let x = (i - self.window.x) as usize;
             let y = (self.options.height - 1 - j - self.window.y) as usize;
-            film.image.set_pixel(x, y, [color.x as f32, color.y as f32, color.z as f32, 1.0]);
+            pixels[y * width + x] = [color.x as f32, color.y as f32, color.z as f32];
         }
         film.stats.add_counts(stats);
         film.finished_pixels += u64::from(block.width) * u64::from(block.height);

@@ -5,12 +5,15 @@
 //! all secondary rays go on together. Sums are taken in the order of the formula, so the result does not depend on
 //! which rays share a stream.
 
+use crate::light::Incident;
 use crate::options::Options;
 use crate::options::Shadows;
-use crate::query::Between;
 use crate::query::NearestBatch;
+use crate::query::NearestBuffers;
 use crate::query::ShadowBatch;
+use crate::query::ShadowBuffers;
 use crate::query::Tests;
+use crate::query::UNBLOCKED;
 use crate::shade::ShadePoint;
 use crate::stats::Stats;
 use crate::world::World;
@@ -24,18 +27,6 @@ use dotray_geometry::Vec3;
 /// one stream a level, stays small.
 const STREAM: usize = 256;
 
-/// A ray on its way and what it can still add to the picture.
-#[derive(Clone, Copy, Debug)]
-struct PathRay {
-    ray: Ray,
-    /// The product of the weights along the path.
-    contribution: Vec3,
-    /// Which ray of the stream above sent it.
-    parent: usize,
-    /// What its colour is multiplied by there.
-    weight: Vec3,
-}
-
 /// Traces rays through a world.
 pub struct Tracer<'a> {
     world: &'a World,
@@ -43,6 +34,23 @@ pub struct Tracer<'a> {
     level: Level,
     /// What has been traced so far.
     pub stats: Stats,
+    /// The streams under way, by depth: kept, so that a bounce allocates nothing.
+    streams: Vec<Stream<'a>>,
+    nearest: NearestBuffers,
+    shadows: ShadowStream,
+}
+
+/// Rays with the same number of bounces behind them, side by side.
+#[derive(Default)]
+struct Stream<'a> {
+    rays: Vec<Ray>,
+    /// The product of the weights along the path of each.
+    contributions: Vec<Vec3>,
+    /// Which ray of the stream above sent each, and what its colour is multiplied by there; empty for eye rays.
+    senders: Vec<(usize, Vec3)>,
+    met: Vec<Met<'a>>,
+    /// What each sees.
+    colors: Vec<Vec3>,
 }
 
 /// A point of the stream that met something, and the ray's place in the stream.
@@ -51,63 +59,98 @@ struct Met<'a> {
     point: ShadePoint<'a>,
 }
 
+/// The shadow rays to one lamp, side by side.
+#[derive(Default)]
+struct ShadowStream {
+    rays: Vec<Ray>,
+    ends: Vec<f64>,
+    /// Whose each is: the place in the stream, and what the lamp gives where nothing lies between.
+    waiting: Vec<(usize, Vec3)>,
+    filters: Vec<Vec3>,
+    buffers: ShadowBuffers,
+}
+
+/// The two kinds of secondary rays.
+#[derive(Clone, Copy)]
+enum Secondary {
+    Reflected,
+    Refracted,
+}
+
 impl<'a> Tracer<'a> {
     /// A tracer that has traced nothing yet.
     pub fn new(world: &'a World, options: &'a Options, level: Level) -> Self {
-        Self { world, options, level, stats: Stats::default() }
+        Self {
+            world,
+            options,
+            level,
+            stats: Stats::default(),
+            streams: Vec::new(),
+            nearest: NearestBuffers::default(),
+            shadows: ShadowStream::default(),
+        }
     }
 
     /// The colours that the eye rays see.
     pub fn colors(&mut self, eye_rays: &[Ray]) -> Vec<Vec3> {
         self.stats.eye_rays += eye_rays.len() as u64;
         let mut colors = Vec::with_capacity(eye_rays.len());
-        for stream in eye_rays.chunks(STREAM) {
-            let contributions = vec![Vec3::ONE; stream.len()];
-            colors.append(&mut self.stream_colors(stream, &contributions, 0));
+        for rays in eye_rays.chunks(STREAM) {
+            let mut stream = self.take_stream();
+            stream.rays.extend_from_slice(rays);
+            stream.contributions.resize(rays.len(), Vec3::ONE);
+            self.trace(&mut stream, 0);
+            colors.extend_from_slice(&stream.colors);
+            self.streams.push(stream);
         }
         colors
     }
 
-    /// The colours of one stream whose rays have `depth` bounces behind them.
-    fn stream_colors(&mut self, rays: &[Ray], contributions: &[Vec3], depth: u32) -> Vec<Vec3> {
-        let world = self.world;
-        let mut colors = vec![world.background; rays.len()];
-        let met = self.meet(rays, depth == 0);
-        for Met { index, point } in &met {
-            colors[*index] = point.own_light(world.ambient);
-        }
-        self.add_lights(&met, &mut colors);
-        if depth < self.options.recursion {
-            let mirrored = self.reflected(&met, contributions);
-            self.stats.reflected_rays += mirrored.len() as u64;
-            self.add_secondary(&mirrored, depth + 1, &mut colors);
-            let bent = self.refracted(&met, contributions);
-            self.stats.refracted_rays += bent.len() as u64;
-            self.add_secondary(&bent, depth + 1, &mut colors);
-        }
-        colors
+    /// An empty stream, its memory taken from one that has done its work.
+    fn take_stream(&mut self) -> Stream<'a> {
+        let mut stream = self.streams.pop().unwrap_or_default();
+        stream.rays.clear();
+        stream.contributions.clear();
+        stream.senders.clear();
+        stream.met.clear();
+        stream.colors.clear();
+        stream
     }
 
-    /// What each ray meets first, with its surface.
-    fn meet(&mut self, rays: &[Ray], together: bool) -> Vec<Met<'a>> {
+    /// Finds the colours of a stream whose rays have `depth` bounces behind them.
+    fn trace(&mut self, stream: &mut Stream<'a>, depth: u32) {
+        stream.colors.resize(stream.rays.len(), self.world.background);
+        self.meet(stream, depth == 0);
+        for Met { index, point } in &stream.met {
+            stream.colors[*index] = point.own_light(self.world.ambient);
+        }
+        self.add_lights(&stream.met, &mut stream.colors);
+        if depth < self.options.recursion && !stream.met.is_empty() {
+            self.add_secondary(stream, Secondary::Reflected, depth + 1);
+            self.add_secondary(stream, Secondary::Refracted, depth + 1);
+        }
+    }
+
+    /// Finds what each ray meets first, with its surface.
+    fn meet(&mut self, stream: &mut Stream<'a>, together: bool) {
         let world = self.world;
         let t_min = [world.ray_eps];
-        let queries = Queries { rays, t_min: &t_min, t_max: ENDLESS };
-        let mut batch = NearestBatch::new(self.level, &world.caster.shapes, queries);
+        let queries = Queries { rays: &stream.rays, t_min: &t_min, t_max: ENDLESS };
+        let shapes = &world.caster.shapes;
+        let mut batch = NearestBatch::new(self.level, shapes, queries, &mut self.nearest);
         if together {
             world.caster.accelerator.walk_together(self.level, &queries, &mut batch);
         } else {
             world.caster.accelerator.walk(self.level, &queries, &mut batch);
         }
-        count(&mut self.stats, &batch.tests);
+        count(&mut self.stats, &self.nearest.tests);
         let filter = self.options.texture_filter;
-        let found = batch.found.iter().enumerate();
-        found
-            .filter_map(|(index, found)| {
-                let point = ShadePoint::new(world, &rays[index], found.as_ref()?, filter);
-                Some(Met { index, point })
-            })
-            .collect()
+        for (index, found) in self.nearest.found.iter().enumerate() {
+            if let Some(nearest) = found {
+                let point = ShadePoint::new(world, &stream.rays[index], nearest, filter);
+                stream.met.push(Met { index, point });
+            }
+        }
     }
 
     /// Adds every light's term to every point, light after light.
@@ -132,33 +175,37 @@ impl<'a> Tracer<'a> {
     fn add_light_sample(
         &mut self,
         met: &[Met<'_>],
-        incident_at: impl Fn(Vec3) -> Option<crate::light::Incident>,
+        incident_at: impl Fn(Vec3) -> Option<Incident>,
         sums: &mut [Vec3],
     ) {
-        let mut rays = Vec::with_capacity(met.len());
-        let mut ends = Vec::with_capacity(met.len());
-        let mut waiting = Vec::with_capacity(met.len());
+        let shadows = &mut self.shadows;
+        shadows.rays.clear();
+        shadows.ends.clear();
+        shadows.waiting.clear();
         for Met { index, point } in met {
             let Some(incident) = incident_at(point.point) else { continue };
             let lit = point.lit(&incident);
             // Where the lamp adds nothing, nobody asks what lies between.
             if lit != Vec3::ZERO {
-                rays.push(Ray::new(point.point, incident.towards));
-                ends.push(incident.distance - self.world.ray_eps);
-                waiting.push((*index, lit));
+                shadows.rays.push(Ray::new(point.point, incident.towards));
+                shadows.ends.push(incident.distance - self.world.ray_eps);
+                shadows.waiting.push((*index, lit));
             }
         }
-        let filters = self.filters(&rays, &ends);
-        for (&(index, lit), filter) in waiting.iter().zip(filters) {
+        self.find_filters();
+        for (&(index, lit), &filter) in self.shadows.waiting.iter().zip(&self.shadows.filters) {
             sums[index] += lit * filter;
         }
     }
 
     /// S_i of each shadow ray.
-    fn filters(&mut self, rays: &[Ray], ends: &[f64]) -> Vec<Vec3> {
+    fn find_filters(&mut self) {
         let world = self.world;
+        let ShadowStream { rays, ends, filters, buffers, .. } = &mut self.shadows;
+        filters.clear();
+        filters.resize(rays.len(), Vec3::ONE);
         let all_opaque = match self.options.shadows {
-            Shadows::Off => return vec![Vec3::ONE; rays.len()],
+            Shadows::Off => return,
             Shadows::Opaque => true,
             Shadows::Filtered => false,
         };
@@ -167,37 +214,51 @@ impl<'a> Tracer<'a> {
         let see_through = |material| !all_opaque && transmission(material) != Vec3::ZERO;
         let t_min = [world.ray_eps];
         let queries = Queries { rays, t_min: &t_min, t_max: ends };
-        let mut batch = ShadowBatch::new(self.level, &world.caster.shapes, queries, see_through);
+        let mut batch = ShadowBatch::new(self.level, &world.caster.shapes, queries, see_through, buffers);
         world.caster.accelerator.walk_together(self.level, &queries, &mut batch);
         batch.finish();
-        count(&mut self.stats, &batch.tests);
-        let filter = |between: &Between| match between {
-            Between::Blocked(_) => Vec3::ZERO,
-            Between::Crossed(crossings) => crossings.iter().fold(Vec3::ONE, |product, crossing| {
-                product * transmission(world.caster.shapes.material(crossing.position))
-            }),
-        };
-        batch.found.iter().map(filter).collect()
+        count(&mut self.stats, &buffers.tests);
+        for crossing in &buffers.crossings {
+            filters[crossing.ray as usize] *= transmission(world.caster.shapes.material(crossing.position));
+        }
+        for (filter, &blocker) in filters.iter_mut().zip(&buffers.blockers) {
+            if blocker != UNBLOCKED {
+                *filter = Vec3::ZERO;
+            }
+        }
     }
 
-    /// The mirrored rays that are worth tracing.
-    fn reflected(&self, met: &[Met<'_>], contributions: &[Vec3]) -> Vec<PathRay> {
-        let ray = |Met { index, point }: &Met<'_>| {
-            let weight = point.material.reflection;
-            let contribution = self.worth(contributions[*index], weight)?;
-            Some(PathRay { ray: point.reflected_ray(), contribution, parent: *index, weight })
-        };
-        met.iter().filter_map(ray).collect()
-    }
-
-    /// The refracted rays that are worth tracing.
-    fn refracted(&self, met: &[Met<'_>], contributions: &[Vec3]) -> Vec<PathRay> {
-        let ray = |Met { index, point }: &Met<'_>| {
-            let weight = point.material.transmission;
-            let contribution = self.worth(contributions[*index], weight)?;
-            Some(PathRay { ray: point.refracted_ray()?, contribution, parent: *index, weight })
-        };
-        met.iter().filter_map(ray).collect()
+    /// Adds weight · Trace() of each secondary ray of a kind that is worth tracing to its sender's colour.
+    fn add_secondary(&mut self, stream: &mut Stream<'a>, kind: Secondary, depth: u32) {
+        let mut next = self.take_stream();
+        for Met { index, point } in &stream.met {
+            let weight = match kind {
+                Secondary::Reflected => point.material.reflection,
+                Secondary::Refracted => point.material.transmission,
+            };
+            let Some(contribution) = self.worth(stream.contributions[*index], weight) else { continue };
+            let ray = match kind {
+                Secondary::Reflected => point.reflected_ray(),
+                Secondary::Refracted => match point.refracted_ray() {
+                    Some(ray) => ray,
+                    None => continue,
+                },
+            };
+            next.rays.push(ray);
+            next.contributions.push(contribution);
+            next.senders.push((*index, weight));
+        }
+        match kind {
+            Secondary::Reflected => self.stats.reflected_rays += next.rays.len() as u64,
+            Secondary::Refracted => self.stats.refracted_rays += next.rays.len() as u64,
+        }
+        if !next.rays.is_empty() {
+            self.trace(&mut next, depth);
+            for (&(sender, weight), &color) in next.senders.iter().zip(&next.colors) {
+                stream.colors[sender] += weight * color;
+            }
+        }
+        self.streams.push(next);
     }
 
     /// The path's contribution behind a surface, where its largest channel reaches the threshold and is above 0.
@@ -205,18 +266,6 @@ impl<'a> Tracer<'a> {
         let product = contribution * weight;
         let largest = product.max_element();
         (largest > 0.0 && largest >= self.options.threshold).then_some(product)
-    }
-
-    /// Adds weight · Trace() of each ray to its parent's colour.
-    fn add_secondary(&mut self, paths: &[PathRay], depth: u32, colors: &mut [Vec3]) {
-        for stream in paths.chunks(STREAM) {
-            let rays: Vec<Ray> = stream.iter().map(|path| path.ray).collect();
-            let contributions: Vec<Vec3> = stream.iter().map(|path| path.contribution).collect();
-            let seen = self.stream_colors(&rays, &contributions, depth);
-            for (path, color) in stream.iter().zip(seen) {
-                colors[path.parent] += path.weight * color;
-            }
-        }
     }
 }
 

@@ -15,6 +15,7 @@ use crate::packet::LANES;
 use crate::packet::Packet;
 use crate::query::Queries;
 use crate::simd::Simd;
+use dotray_geometry::Ray;
 
 /// A child that waits for some groups.
 #[derive(Clone, Copy, Debug)]
@@ -34,21 +35,40 @@ impl Waiting {
 pub fn walk<S: Simd>(simd: S, tree: &Tree, queries: &Queries<'_>, batch: &mut dyn Batch) {
     let mut stack = vec![Waiting::NOBODY; tree.stack + WIDTH + 1];
     let mut packet = Packet::new(&tree.frame);
-    let mut octants: [Vec<u32>; 8] = Default::default();
-    for (i, ray) in queries.rays.iter().enumerate() {
-        let direction = ray.direction;
-        let octant =
-            (0..3).map(|axis| usize::from(direction[axis].is_sign_negative()) << axis).sum::<usize>();
-        octants[octant & 7].push(i as u32);
-    }
-    for rays in &octants {
-        for rays in rays.chunks(GROUPS * LANES) {
+    let (order, ends) = by_octant(queries);
+    let mut start = 0;
+    for end in ends {
+        for rays in order[start..end].chunks(GROUPS * LANES) {
             for group in rays.chunks(LANES) {
                 packet.push(simd, queries, group);
             }
             walk_packet(simd, tree, &mut stack, &mut packet, batch);
         }
+        start = end;
     }
+}
+
+/// The rays' numbers by the signs of their directions, in ascending order for each, and where each octant ends.
+fn by_octant(queries: &Queries<'_>) -> (Vec<u32>, [usize; 8]) {
+    let octant = |ray: &Ray| {
+        let negative = |axis: usize| usize::from(ray.direction[axis].is_sign_negative());
+        (negative(0) | negative(1) << 1 | negative(2) << 2) & 7
+    };
+    let mut next = [0; 8];
+    for ray in queries.rays {
+        next[octant(ray)] += 1;
+    }
+    let mut start = 0;
+    for count in &mut next {
+        (*count, start) = (start, start + *count);
+    }
+    let mut order = vec![0; queries.len()];
+    for (i, ray) in queries.rays.iter().enumerate() {
+        let place = &mut next[octant(ray)];
+        order[*place] = i as u32;
+        *place += 1;
+    }
+    (order, next)
 }
 
 /// Walks one packet, tells the batch what it cost, and empties it.
