@@ -25,7 +25,7 @@ use dotray_geometry::Vec3;
 
 /// The rays of one stream: enough to keep SIMD lanes and caches busy, few enough that a deep recursion, which holds
 /// one stream a level, stays small.
-const STREAM: usize = 256;
+const STREAM: usize = 1024;
 
 /// Traces rays through a world.
 pub struct Tracer<'a> {
