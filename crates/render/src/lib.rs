@@ -35,14 +35,19 @@ pub mod world;
 
 pub mod shade;
 
+pub mod inspect;
+
 pub mod trace;
 
 pub mod sampler;
 
 pub mod tiles;
 
+pub mod layers;
+
 pub use caster::Caster;
 pub use error::RenderError;
+pub use layers::{Layer, LayerPicture, render_layers};
 pub use options::{Antialias, Crop, Options, PrepareOptions, Shadows, TextureFilter};
 pub use query::Nearest;
 pub use stats::{MemoryPart, Stats};

@@ -5,9 +5,17 @@
 //! all secondary rays go on together. Sums are taken in the order of the formula, so the result does not depend on
 //! which rays share a stream.
 
+use crate::inspect::End;
+use crate::inspect::Inspector;
+use crate::inspect::LightTerm;
+use crate::inspect::RayKind;
+use crate::inspect::RayNode;
+use crate::inspect::Shadow;
 use crate::light::Incident;
+use crate::light::Light;
 use crate::options::Options;
 use crate::options::Shadows;
+use crate::query::Crossing;
 use crate::query::NearestBatch;
 use crate::query::NearestBuffers;
 use crate::query::ShadowBatch;
@@ -38,6 +46,8 @@ pub struct Tracer<'a> {
     streams: Vec<Stream<'a>>,
     nearest: NearestBuffers,
     shadows: ShadowStream,
+    /// Who wants to know everything of the one ray that is traced.
+    inspector: Option<Inspector>,
 }
 
 /// Rays with the same number of bounces behind them, side by side.
@@ -70,11 +80,30 @@ struct ShadowStream {
     buffers: ShadowBuffers,
 }
 
+/// One point of a light that stands for it.
+#[derive(Clone, Copy)]
+struct LightSample<'a> {
+    light: &'a Light,
+    /// The light's number.
+    number: u32,
+    sample: u32,
+    samples: u32,
+}
+
 /// The two kinds of secondary rays.
 #[derive(Clone, Copy)]
 enum Secondary {
     Reflected,
     Refracted,
+}
+
+impl Secondary {
+    fn kind(self) -> RayKind {
+        match self {
+            Self::Reflected => RayKind::Reflected,
+            Self::Refracted => RayKind::Refracted,
+        }
+    }
 }
 
 impl<'a> Tracer<'a> {
@@ -88,6 +117,7 @@ impl<'a> Tracer<'a> {
             streams: Vec::new(),
             nearest: NearestBuffers::default(),
             shadows: ShadowStream::default(),
+            inspector: None,
         }
     }
 
@@ -104,6 +134,17 @@ impl<'a> Tracer<'a> {
             self.streams.push(stream);
         }
         colors
+    }
+
+    /// All that the renderer computes for one eye ray, its colour included.
+    pub fn inspect(&mut self, eye_ray: Ray) -> Option<RayNode> {
+        let mut inspector = Inspector::default();
+        inspector.begin(RayKind::Eye, eye_ray, 0, Vec3::ONE, Vec3::ONE);
+        self.inspector = Some(inspector);
+        let color = self.colors(&[eye_ray])[0];
+        let mut inspector = self.inspector.take()?;
+        inspector.finish(color);
+        inspector.root
     }
 
     /// An empty stream, its memory taken from one that has done its work.
@@ -123,6 +164,9 @@ impl<'a> Tracer<'a> {
         self.meet(stream, depth == 0);
         for Met { index, point } in &stream.met {
             stream.colors[*index] = point.own_light(self.world.ambient);
+            if let Some(inspector) = &mut self.inspector {
+                inspector.own_light(stream.colors[*index]);
+            }
         }
         self.add_lights(&stream.met, &mut stream.colors);
         if depth < self.options.recursion && !stream.met.is_empty() {
@@ -147,23 +191,32 @@ impl<'a> Tracer<'a> {
         let filter = self.options.texture_filter;
         for (index, found) in self.nearest.found.iter().enumerate() {
             if let Some(nearest) = found {
-                let point = ShadePoint::new(world, &stream.rays[index], nearest, filter);
+                let ray = &stream.rays[index];
+                let point = ShadePoint::new(world, ray, nearest, filter);
+                if let Some(inspector) = &mut self.inspector {
+                    let surface = shapes.surface(nearest.position, ray, nearest.hit);
+                    inspector.met(*nearest, surface, shapes.material(nearest.position), &point);
+                }
                 stream.met.push(Met { index, point });
             }
+        }
+        if let (Some(inspector), Some(tests)) = (&mut self.inspector, self.nearest.tests.first()) {
+            inspector.tests(*tests);
         }
     }
 
     /// Adds every light's term to every point, light after light.
     fn add_lights(&mut self, met: &[Met<'_>], colors: &mut [Vec3]) {
-        for light in &self.world.lights {
+        for (number, light) in (0..).zip(&self.world.lights) {
             let samples = light.samples(self.options.light_samples);
+            let first = LightSample { light, number, sample: 0, samples };
             if samples == 1 {
-                self.add_light_sample(met, |point| light.incident(point, 0, 1), colors);
+                self.add_light_sample(met, first, colors);
                 continue;
             }
             let mut sums = vec![Vec3::ZERO; colors.len()];
             for sample in 0..samples {
-                self.add_light_sample(met, |point| light.incident(point, sample, samples), &mut sums);
+                self.add_light_sample(met, LightSample { sample, ..first }, &mut sums);
             }
             for Met { index, .. } in met {
                 colors[*index] += sums[*index] / f64::from(samples);
@@ -172,18 +225,17 @@ impl<'a> Tracer<'a> {
     }
 
     /// Adds the term of one point lamp to every point that it reaches.
-    fn add_light_sample(
-        &mut self,
-        met: &[Met<'_>],
-        incident_at: impl Fn(Vec3) -> Option<Incident>,
-        sums: &mut [Vec3],
-    ) {
+    fn add_light_sample(&mut self, met: &[Met<'_>], from: LightSample<'_>, sums: &mut [Vec3]) {
         let shadows = &mut self.shadows;
         shadows.rays.clear();
         shadows.ends.clear();
         shadows.waiting.clear();
         for Met { index, point } in met {
-            let Some(incident) = incident_at(point.point) else { continue };
+            let incident = from.light.incident(point.point, from.sample, from.samples);
+            if let Some(inspector) = &mut self.inspector {
+                inspector.light(light_term(point, from, incident.as_ref()));
+            }
+            let Some(incident) = incident else { continue };
             let lit = point.lit(&incident);
             // Where the lamp adds nothing, nobody asks what lies between.
             if lit != Vec3::ZERO {
@@ -226,6 +278,16 @@ impl<'a> Tracer<'a> {
                 *filter = Vec3::ZERO;
             }
         }
+        if let (Some(inspector), [filter]) = (&mut self.inspector, &filters[..]) {
+            let shadow = match buffers.blockers[0] {
+                UNBLOCKED => {
+                    let through = |c: &Crossing| transmission(world.caster.shapes.material(c.position));
+                    Shadow::Crossed(buffers.crossings.iter().map(|c| (*c, through(c))).collect())
+                }
+                position => Shadow::Blocked { position, number: world.caster.shapes.number(position) },
+            };
+            inspector.shadow(shadow, *filter, buffers.tests[0]);
+        }
     }
 
     /// Adds weight · Trace() of each secondary ray of a kind that is worth tracing to its sender's colour.
@@ -236,14 +298,19 @@ impl<'a> Tracer<'a> {
                 Secondary::Reflected => point.material.reflection,
                 Secondary::Refracted => point.material.transmission,
             };
-            let Some(contribution) = self.worth(stream.contributions[*index], weight) else { continue };
-            let ray = match kind {
-                Secondary::Reflected => point.reflected_ray(),
-                Secondary::Refracted => match point.refracted_ray() {
-                    Some(ray) => ray,
-                    None => continue,
-                },
-            };
+            let (ray, contribution) =
+                match self.secondary_ray(stream.contributions[*index], weight, kind, point) {
+                    Ok(sent) => sent,
+                    Err(end) => {
+                        if let Some(inspector) = &mut self.inspector {
+                            inspector.ended(kind.kind(), end);
+                        }
+                        continue;
+                    }
+                };
+            if let Some(inspector) = &mut self.inspector {
+                inspector.begin(kind.kind(), ray, depth, contribution, weight);
+            }
             next.rays.push(ray);
             next.contributions.push(contribution);
             next.senders.push((*index, weight));
@@ -256,16 +323,55 @@ impl<'a> Tracer<'a> {
             self.trace(&mut next, depth);
             for (&(sender, weight), &color) in next.senders.iter().zip(&next.colors) {
                 stream.colors[sender] += weight * color;
+                if let Some(inspector) = &mut self.inspector {
+                    inspector.finish(color);
+                }
             }
         }
         self.streams.push(next);
     }
 
-    /// The path's contribution behind a surface, where its largest channel reaches the threshold and is above 0.
-    fn worth(&self, contribution: Vec3, weight: Vec3) -> Option<Vec3> {
+    /// A secondary ray and its contribution, where that is worth tracing: its largest channel is above 0 and not
+    /// below the threshold.
+    #[inline]
+    fn secondary_ray(
+        &self,
+        contribution: Vec3,
+        weight: Vec3,
+        kind: Secondary,
+        point: &ShadePoint<'_>,
+    ) -> Result<(Ray, Vec3), End> {
         let product = contribution * weight;
         let largest = product.max_element();
-        (largest > 0.0 && largest >= self.options.threshold).then_some(product)
+        if largest <= 0.0 {
+            return Err(End::NoWeight);
+        }
+        if largest < self.options.threshold {
+            return Err(End::Threshold { largest });
+        }
+        let ray = match kind {
+            Secondary::Reflected => Some(point.reflected_ray()),
+            Secondary::Refracted => point.refracted_ray(),
+        };
+        ray.map(|ray| (ray, product)).ok_or(End::TotalReflection)
+    }
+}
+
+/// The term of one light, its shadow not asked for yet.
+fn light_term(point: &ShadePoint<'_>, from: LightSample<'_>, incident: Option<&Incident>) -> LightTerm {
+    let cosine = incident.map_or(0.0, |incident| point.normal.dot(incident.towards));
+    LightTerm {
+        light: from.number,
+        sample: from.sample,
+        samples: from.samples,
+        incident: incident.copied(),
+        cosine,
+        diffuse: point.diffuse(cosine.max(0.0)),
+        highlight: incident.map_or(Vec3::ZERO, |incident| point.highlight(incident.towards)),
+        lit: incident.map_or(Vec3::ZERO, |incident| point.lit(incident)),
+        shadow: Shadow::NotAsked,
+        filter: Vec3::ONE,
+        tests: Tests::default(),
     }
 }
 

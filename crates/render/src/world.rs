@@ -77,6 +77,11 @@ impl World {
         })
     }
 
+    /// The camera, after defaults.
+    pub fn camera(&self) -> &model::Camera {
+        &self.camera
+    }
+
     /// The shapes, for rays of one's own.
     pub fn caster(&self) -> &Caster {
         &self.caster

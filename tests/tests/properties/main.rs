@@ -2,6 +2,7 @@
 //! and SIMD level; a crop is a part of the whole; size does not matter; hits are those of a slow independent judge.
 
 mod crops;
+mod inspect;
 mod judge;
 mod levels;
 mod random;

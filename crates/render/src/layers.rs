@@ -1,0 +1,241 @@
+//! Layers: what lies behind each pixel besides its colour (arbitrary output variables).
+//!
+//! A layer is a picture of numbers, of the ray through each pixel's centre: where it met something, on what, and what
+//! each part of the formula gave there. Oversampling does not enter; a layer is data, and means of shape numbers mean
+//! nothing.
+
+use crate::camera::Camera;
+use crate::error::RenderError;
+use crate::inspect::Branch;
+use crate::inspect::LightTerm;
+use crate::inspect::Meeting;
+use crate::inspect::RayNode;
+use crate::inspect::Shadow;
+use crate::options::Options;
+use crate::query::Tests;
+use crate::tiles::Observer;
+use crate::tiles::Progress;
+use crate::trace::Tracer;
+use crate::world::World;
+use dotray_accel::simd::level;
+use dotray_geometry::Vec3;
+use rayon::prelude::*;
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering;
+
+/// One kind of layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// The distance along the eye ray; infinite where nothing is met.
+    Depth,
+    /// The shading normal in the world, turned to the viewer; 0 where nothing is met.
+    Normal,
+    /// The point in the world.
+    Position,
+    /// The shape's number in file order, from 0; -1 where nothing is met.
+    Shape,
+    /// The material's number in the scene, from 0; -1 where nothing is met.
+    Material,
+    /// The texture coordinates (s, t).
+    St,
+    /// The point in the shape's own coordinates.
+    Object,
+    /// How much of the lights that face the point comes through, channel by channel: 1 in full light, 0 in shadow.
+    Shadow,
+    /// What the point gives off by itself and by the lights; the background where nothing is met.
+    Direct,
+    /// What the mirrored ray adds.
+    Reflected,
+    /// What the refracted ray adds.
+    Transmitted,
+    /// All rays that the pixel's ray led to, itself included.
+    Rays,
+    /// The boxes (or cells) that all these rays were tested against.
+    BoxTests,
+    /// The shapes that all these rays were tested against.
+    ShapeTests,
+}
+
+impl Layer {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 14] = [
+        Self::Depth,
+        Self::Normal,
+        Self::Position,
+        Self::Shape,
+        Self::Material,
+        Self::St,
+        Self::Object,
+        Self::Shadow,
+        Self::Direct,
+        Self::Reflected,
+        Self::Transmitted,
+        Self::Rays,
+        Self::BoxTests,
+        Self::ShapeTests,
+    ];
+
+    /// Its name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::Position => "position",
+            Self::Shape => "shape",
+            Self::Material => "material",
+            Self::St => "st",
+            Self::Object => "object",
+            Self::Shadow => "shadow",
+            Self::Direct => "direct",
+            Self::Reflected => "reflected",
+            Self::Transmitted => "transmitted",
+            Self::Rays => "rays",
+            Self::BoxTests => "boxtests",
+            Self::ShapeTests => "shapetests",
+        }
+    }
+
+    /// The names of its channels, as EXR files have them.
+    pub const fn channels(self) -> &'static [&'static str] {
+        match self {
+            Self::Depth => &["Z"],
+            Self::Normal | Self::Position | Self::Object => &["X", "Y", "Z"],
+            Self::Shape | Self::Material => &["id"],
+            Self::St => &["S", "T"],
+            Self::Shadow | Self::Direct | Self::Reflected | Self::Transmitted => &["R", "G", "B"],
+            Self::Rays | Self::BoxTests | Self::ShapeTests => &["count"],
+        }
+    }
+
+    /// Appends the layer's numbers of one pixel.
+    fn append(self, node: &RayNode, samples: &mut Vec<f32>) {
+        let met = node.meeting.as_ref();
+        let vector = |samples: &mut Vec<f32>, v: Vec3| samples.extend(v.to_array().map(|x| x as f32));
+        let of_point = |value: fn(&Meeting) -> Vec3| met.map_or(Vec3::ZERO, value);
+        match self {
+            Self::Depth => samples.push(met.map_or(f32::INFINITY, |met| met.nearest.hit.t as f32)),
+            Self::Normal => vector(samples, of_point(|met| met.normal)),
+            Self::Position => vector(samples, of_point(|met| met.surface.point)),
+            // Singles hold whole numbers up to 2^24 exactly; beyond, the nearest one they hold.
+            Self::Shape => samples.push(met.map_or(-1.0, |met| met.nearest.number as f32)),
+            Self::Material => samples.push(met.map_or(-1.0, |met| met.material as f32)),
+            Self::St => {
+                let st = met.map_or([0.0; 2], |met| met.surface.in_object.texcoord.to_array());
+                samples.extend(st.map(|x| x as f32));
+            }
+            Self::Object => vector(samples, of_point(|met| met.surface.in_object.point)),
+            Self::Shadow => vector(samples, met.map_or(Vec3::ONE, light_share)),
+            Self::Direct => vector(samples, met.map_or(node.color, Meeting::direct)),
+            Self::Reflected => vector(samples, of_point(|met| met.reflected.color())),
+            Self::Transmitted => vector(samples, of_point(|met| met.refracted.color())),
+            Self::Rays => samples.push(cost(node).rays as f32),
+            Self::BoxTests => samples.push(cost(node).tests.boxes as f32),
+            Self::ShapeTests => samples.push(cost(node).tests.shapes as f32),
+        }
+    }
+}
+
+/// The mean of S_i over the lights (and samples) that face the point; 1 where none does.
+fn light_share(met: &Meeting) -> Vec3 {
+    let facing = met.lights.iter().filter(|term| term.lit != Vec3::ZERO);
+    let (sum, count) = facing.fold((Vec3::ZERO, 0.0), |(sum, count), term| (sum + term.filter, count + 1.0));
+    if count > 0.0 { sum / count } else { Vec3::ONE }
+}
+
+/// What a ray and all that it led to cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Cost {
+    rays: u64,
+    tests: Tests,
+}
+
+fn cost(node: &RayNode) -> Cost {
+    let mut cost = Cost::default();
+    // A list, not recursion: the recursion limit is the user's.
+    let mut open = vec![node];
+    while let Some(node) = open.pop() {
+        cost.rays += 1;
+        let mut add = |tests: &Tests| {
+            cost.tests.boxes += tests.boxes;
+            cost.tests.shapes += tests.shapes;
+        };
+        add(&node.tests);
+        let Some(met) = &node.meeting else { continue };
+        let asked = |term: &&LightTerm| !matches!(term.shadow, Shadow::NotAsked);
+        for term in met.lights.iter().filter(asked) {
+            add(&term.tests);
+            cost.rays += 1;
+        }
+        for branch in [&met.reflected, &met.refracted] {
+            if let Branch::Traced(node) = branch {
+                open.push(node);
+            }
+        }
+    }
+    cost
+}
+
+/// A layer of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerPicture {
+    /// Which.
+    pub layer: Layer,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// The numbers, pixel by pixel from the upper left, as many a pixel as [`Layer::channels`].
+    pub samples: Vec<f32>,
+}
+
+/// Computes layers of the window of the picture that `options` describe; `None` where the observer cancelled it.
+///
+/// # Errors
+/// Options that make no sense; threads that cannot be started.
+pub fn render_layers(
+    world: &World,
+    options: &Options,
+    wanted: &[Layer],
+    observer: &dyn Observer,
+) -> Result<Option<Vec<LayerPicture>>, RenderError> {
+    options.validate()?;
+    let window = options.window();
+    let (width, height) = (window.width as usize, window.height as usize);
+    let camera = Camera::new(&world.camera, options.width, options.height);
+    let finished = AtomicU64::new(0);
+    let total_pixels = width as u64 * height as u64;
+    let row = |y: u32| -> Option<Vec<Vec<f32>>> {
+        if observer.cancelled() {
+            return None;
+        }
+        let mut tracer = Tracer::new(world, options, level());
+        let mut samples = vec![Vec::new(); wanted.len()];
+        let from_below = f64::from(options.height - 1 - (window.y + y)) + 0.5;
+        for x in window.x..window.x + window.width {
+            let node = tracer.inspect(camera.ray(f64::from(x) + 0.5, from_below))?;
+            for (layer, samples) in wanted.iter().zip(&mut samples) {
+                layer.append(&node, samples);
+            }
+        }
+        let before = finished.fetch_add(u64::from(window.width), Ordering::Relaxed);
+        let finished_pixels = before + u64::from(window.width);
+        observer.tile_finished(&Progress { finished_pixels, total_pixels });
+        Some(samples)
+    };
+    let run = || (0..window.height).into_par_iter().map(row).collect::<Option<Vec<_>>>();
+    let rows = match options.threads {
+        None => run(),
+        Some(threads) => rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?
+            .install(run),
+    };
+    let Some(rows) = rows else { return Ok(None) };
+    let picture = |(index, &layer): (usize, &Layer)| {
+        let mut samples = Vec::with_capacity(width * height * layer.channels().len());
+        rows.iter().for_each(|row| samples.extend_from_slice(&row[index]));
+        LayerPicture { layer, width, height, samples }
+    };
+    Ok(Some(wanted.iter().enumerate().map(picture).collect()))
+}
