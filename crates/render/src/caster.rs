@@ -1,5 +1,6 @@
 //! Rays against shapes, without a picture: what a program needs that casts rays of its own.
 
+use crate::bake::written_shape;
 use crate::options::PrepareOptions;
 use crate::query::Nearest;
 use crate::query::NearestBatch;
@@ -7,7 +8,6 @@ use crate::query::NearestBuffers;
 use crate::query::ShadowBatch;
 use crate::query::ShadowBuffers;
 use crate::query::UNBLOCKED;
-use crate::shapes;
 use crate::shapes::Shapes;
 use crate::shapes::WorldSurface;
 use dotray_accel::Accelerator;
@@ -66,7 +66,7 @@ impl Boxes for ShapeBoxes<'_> {
     }
 
     fn bounds(&self, item: u32) -> Aabb {
-        let (_, run, shape) = shapes::written_shape(self.runs, self.files, item);
+        let (_, run, shape) = written_shape(self.runs, self.files, item);
         shape.world_bounds(&self.frames[run.frame as usize].world_from_object)
     }
 }
@@ -94,22 +94,24 @@ impl Caster {
         let groups = group_events(&resolved);
         let settings = Settings { quality: options.quality };
         let build = || Accelerator::build(options.accel, &boxes, &groups, &settings);
-        let built = match options.threads.map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build()) {
-            Some(Ok(pool)) => pool.install(build),
-            Some(Err(_)) | None => build(),
+        // Threads that cannot be had are no reason to fail: the common pool builds the same tree.
+        let pool = options.threads.and_then(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().ok());
+        let built = match &pool {
+            Some(pool) => pool.install(build),
+            None => build(),
         };
         let mut seconds = vec![("build", start.elapsed().as_secs_f64())];
 
         let start = Instant::now();
         let cull_frame = built.accelerator.shows_blocks().then(|| Frame::around(built.accelerator.bounds()));
-        let mut shapes = Shapes::new(resolved.runs, resolved.frames, resolved.files, cull_frame);
-        shapes.reserve(resolved.shape_count as usize);
         let material = |run: &Run, written: i32| run.material(written).unwrap_or(default_material);
-        match &built.order {
-            Some(order) => order.iter().for_each(|&number| shapes.push(number, material)),
-            None => (0..resolved.shape_count).for_each(|number| shapes.push(number, material)),
-        }
-        shapes.finish();
+        let Resolved { runs, frames, files, shape_count, .. } = resolved;
+        let numbers = built.order.unwrap_or_else(|| (0..shape_count).collect());
+        let bake = || Shapes::bake(runs, frames, files, &numbers, cull_frame, material);
+        let shapes = match &pool {
+            Some(pool) => pool.install(bake),
+            None => bake(),
+        };
         seconds.push(("bake", start.elapsed().as_secs_f64()));
         Self { shapes, accelerator: built.accelerator, seconds, level: level() }
     }

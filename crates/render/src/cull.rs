@@ -186,6 +186,32 @@ impl Culls {
         put(&mut self.corners, position, ANY_CORNER, joined(frame.point(corners[0]), edges));
     }
 
+    /// Makes room for as many balls and triangles, or for none of them.
+    pub fn reserve(&mut self, balls: usize, triangles: usize) {
+        let with_end = |count: usize| if count > 0 { count + LANES } else { 0 };
+        self.balls.iter_mut().for_each(|list| list.reserve_exact(with_end(balls)));
+        self.corners.iter_mut().for_each(|list| list.reserve_exact(with_end(triangles)));
+    }
+
+    /// Appends what was put down from position 0 on elsewhere, from `position` on.
+    pub fn append(&mut self, position: usize, other: Self) {
+        fn join<const N: usize>(
+            lists: &mut [Vec<f32>; N],
+            first: usize,
+            other: [Vec<f32>; N],
+            any: [f32; N],
+        ) {
+            if !other[0].is_empty() {
+                fill(lists, first, any);
+                lists.iter_mut().zip(other).for_each(|(list, mut other)| list.append(&mut other));
+            }
+        }
+        join(&mut self.balls, position, other.balls, ANY_BALL);
+        join(&mut self.bars, position, other.bars, ANY_BAR);
+        join(&mut self.boxes, position, other.boxes, ANY_BOX);
+        join(&mut self.corners, position, other.corners, ANY_CORNER);
+    }
+
     /// Ends the lists so that eight places may be read from every one of `count` positions.
     pub fn finish(&mut self, count: usize) {
         fn end<const N: usize>(lists: &mut [Vec<f32>; N], len: usize, any: [f32; N]) {

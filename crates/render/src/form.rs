@@ -28,7 +28,7 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::Sphere,
         Self::Cuboid,
         Self::Cylinder,

@@ -25,6 +25,8 @@ mod cull;
 
 mod form;
 
+mod bake;
+
 pub mod shapes;
 
 pub mod query;
@@ -52,4 +54,4 @@ pub use options::{Antialias, Crop, Options, PrepareOptions, Shadows, TextureFilt
 pub use query::Nearest;
 pub use stats::{MemoryPart, Stats};
 pub use tiles::{Observer, Rendering, Silent, render};
-pub use world::World;
+pub use world::{Textures, World};

@@ -343,7 +343,8 @@ impl<'a> Tracer<'a> {
     ) -> Result<(Ray, Vec3), End> {
         let product = contribution * weight;
         let largest = product.max_element();
-        if largest <= 0.0 {
+        // Weights near the end of f64's range: infinite times nothing is not a number.
+        if largest <= 0.0 || largest.is_nan() {
             return Err(End::NoWeight);
         }
         if largest < self.options.threshold {

@@ -36,6 +36,29 @@ pub struct World {
 /// close to be seen.
 const RELATIVE_RAY_EPS: f64 = 1e-9;
 
+/// The pictures that a scene's materials ask for.
+#[derive(Debug, Default)]
+pub struct Textures {
+    textures: Vec<Texture>,
+    seconds: f64,
+}
+
+impl Textures {
+    /// Reads and decodes them.
+    ///
+    /// # Errors
+    /// A diagnostic for each that cannot be read or decoded.
+    pub fn load(
+        resolved: &Resolved,
+        files: &dyn Files,
+        options: &PrepareOptions,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let start = Instant::now();
+        let textures = load_textures(&resolved.textures, files, &options.image_limits)?;
+        Ok(Self { textures, seconds: start.elapsed().as_secs_f64() })
+    }
+}
+
 impl World {
     /// Loads the textures, builds the accelerator and bakes the shapes.
     ///
@@ -46,14 +69,25 @@ impl World {
         files: &dyn Files,
         options: &PrepareOptions,
     ) -> Result<Self, Vec<Diagnostic>> {
-        let mut seconds = Vec::new();
-        let start = Instant::now();
-        let textures = load_textures(&resolved.textures, files, &options.image_limits)?;
-        seconds.push(("textures", start.elapsed().as_secs_f64()));
+        let textures = Textures::load(&resolved, files, options)?;
+        Self::build(resolved, textures, options)
+    }
+
+    /// Builds the accelerator and bakes the shapes. Whatever can be said of a place in the text has been said before,
+    /// so whoever is short of memory lets go of the text between the two.
+    ///
+    /// # Errors
+    /// A diagnostic for a scene beyond the limits.
+    pub fn build(
+        resolved: Resolved,
+        textures: Textures,
+        options: &PrepareOptions,
+    ) -> Result<Self, Vec<Diagnostic>> {
         if resolved.shape_count > MAX_ITEMS {
             return Err(vec![too_many_shapes(resolved.shape_count)]);
         }
-
+        let Textures { textures, seconds } = textures;
+        let mut seconds = vec![("textures", seconds)];
         // What only pictures need is taken out before the shapes are baked.
         let mut resolved = resolved;
         let default_material = resolved.default_material();

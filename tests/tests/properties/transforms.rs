@@ -20,10 +20,8 @@ const T_MIN: f64 = 1e-6;
 fn baked(text: String) -> Shapes {
     let scene = pictures::scene_of_text("random.ray", text).unwrap_or_else(|error| panic!("{error}"));
     let resolved = pictures::resolved(scene).unwrap_or_else(|error| panic!("{error}"));
-    let mut shapes = Shapes::new(resolved.runs, resolved.frames, resolved.files, None);
-    shapes.reserve(resolved.shape_count as usize);
-    (0..resolved.shape_count).for_each(|number| shapes.push(number, |_, _| 0));
-    shapes
+    let numbers: Vec<u32> = (0..resolved.shape_count).collect();
+    Shapes::bake(resolved.runs, resolved.frames, resolved.files, &numbers, None, |_, _| 0)
 }
 
 /// Brute force over the shapes as the renderer tests them.

@@ -1,0 +1,356 @@
+//! Laying shapes down: flat typed arrays in the accelerator's order, each shape in its cheapest exact form.
+//!
+//! A *position* is a place in the accelerator's order, so that a leaf is one block of memory; a *number* is the
+//! shape's place in the scene's file order, which decides ties.
+
+use crate::cull::Culls;
+use crate::cull::Spine;
+use crate::form::Form;
+use crate::form::Slot;
+use crate::form::axis_aligned;
+use dotray_accel::narrow::Frame;
+use dotray_geometry::Affine;
+use dotray_geometry::Cone;
+use dotray_geometry::Cuboid;
+use dotray_geometry::Cylinder;
+use dotray_geometry::Shape;
+use dotray_geometry::Sphere;
+use dotray_geometry::Transform;
+use dotray_geometry::Vec3;
+use dotray_geometry::shape::OrientedCone;
+use dotray_geometry::shape::OrientedCylinder;
+use dotray_scene::model::SceneFile;
+use dotray_scene::model::ShapeKind;
+use dotray_scene::resolved::Run;
+use rayon::prelude::*;
+
+/// The scene's own lists.
+#[derive(Debug, Default)]
+pub(crate) struct Lists {
+    pub runs: Vec<Run>,
+    pub frames: Vec<Transform>,
+    pub files: Vec<SceneFile>,
+    /// Where single precision rules shapes out, for accelerators that ask for it.
+    pub cull_frame: Option<Frame>,
+}
+
+/// Baked shapes, position by position, and each form's list.
+#[derive(Debug, Default)]
+pub(crate) struct Baked {
+    /// The only form there is: then the list of slots is empty, and a position is an index into that form's list.
+    only: Option<Form>,
+    slots: Vec<Slot>,
+    pub numbers: Vec<u32>,
+    pub materials: Vec<u32>,
+    /// The run of each position; empty where there is only one run.
+    pub runs_of: Vec<u32>,
+    pub spheres: Vec<Sphere>,
+    pub cuboids: Vec<Cuboid>,
+    pub cylinders: Vec<OrientedCylinder>,
+    pub cones: Vec<OrientedCone>,
+    pub triangles: Vec<[Vec3; 3]>,
+    pub framed_spheres: Vec<Sphere>,
+    pub framed_cuboids: Vec<Cuboid>,
+    pub framed_cylinders: Vec<Cylinder>,
+    pub framed_cones: Vec<Cone>,
+    pub culls: Culls,
+}
+
+/// Shape `number` of the scene, in object coordinates, with its run.
+pub fn written_shape<'a>(runs: &'a [Run], files: &[SceneFile], number: u32) -> (usize, &'a Run, Shape) {
+    let index = run_of(runs, number);
+    let run = &runs[index];
+    let entry = (run.first + (number - run.first_shape)) as usize;
+    // Resolving has checked that every entry of a run is a shape.
+    let shape = files[run.file.0 as usize].shape(run.kind, entry).expect("a resolved run names shapes only");
+    (index, run, shape)
+}
+
+/// The run that holds shape `number`.
+pub fn run_of(runs: &[Run], number: u32) -> usize {
+    runs.partition_point(|run| run.first_shape <= number) - 1
+}
+
+/// How many shapes one thread bakes at a time.
+const PIECE: usize = 1 << 14;
+
+impl Baked {
+    /// Bakes the shapes of these numbers, one position after another. `material` turns a run and the number written
+    /// there into the scene's material number. The result does not depend on the number of threads.
+    pub fn lay(lists: &Lists, numbers: &[u32], material: impl Fn(&Run, i32) -> u32 + Sync) -> Self {
+        let mut all = Self::default();
+        all.reserve(lists, numbers.len());
+        all.reserve_forms(lists);
+        // A few pieces at a time, lest everything is there twice.
+        for pieces in numbers.chunks(PIECE * 4 * rayon::current_num_threads()) {
+            let piece = |numbers: &[u32]| {
+                let mut piece = Self::default();
+                piece.reserve(lists, numbers.len());
+                numbers.iter().for_each(|&number| piece.push(lists, number, &material));
+                piece
+            };
+            let baked: Vec<Self> = pieces.par_chunks(PIECE).map(piece).collect();
+            baked.into_iter().for_each(|piece| all.append(piece));
+        }
+        all.finish();
+        all
+    }
+
+    /// Makes room for `count` shapes.
+    fn reserve(&mut self, lists: &Lists, count: usize) {
+        self.slots.reserve_exact(count);
+        self.numbers.reserve_exact(count);
+        self.materials.reserve_exact(count);
+        if lists.runs.len() > 1 {
+            self.runs_of.reserve_exact(count);
+        }
+    }
+
+    /// Makes room in the lists of forms for the shapes that stand in no group, which are the most where there are
+    /// many: lists that grow by doubling would need twice the memory.
+    fn reserve_forms(&mut self, lists: &Lists) {
+        let count = |wanted: &[ShapeKind]| -> usize {
+            let runs = lists.runs.iter().filter(|run| run.frame == 0 && wanted.contains(&run.kind));
+            runs.map(|run| run.count as usize).sum()
+        };
+        let (spheres, cuboids) = (count(&[ShapeKind::Sphere]), count(&[ShapeKind::Cuboid]));
+        let (cylinders, cones) = (count(&[ShapeKind::Cylinder]), count(&[ShapeKind::Cone]));
+        let triangles = count(&[ShapeKind::Triangle, ShapeKind::IndexedTriangle]);
+        self.spheres.reserve_exact(spheres);
+        self.cuboids.reserve_exact(cuboids);
+        self.cylinders.reserve_exact(cylinders);
+        self.cones.reserve_exact(cones);
+        self.triangles.reserve_exact(triangles);
+        if lists.cull_frame.is_some() {
+            self.culls.reserve(spheres, triangles);
+        }
+    }
+
+    /// Appends shape `number` at the next position.
+    fn push(&mut self, lists: &Lists, number: u32, material: impl Fn(&Run, i32) -> u32) {
+        let (run_index, run, shape) = written_shape(&lists.runs, &lists.files, number);
+        let entry = (run.first + (number - run.first_shape)) as usize;
+        let written = lists.files[run.file.0 as usize].shape_materials(run.kind)[entry];
+        self.materials.push(material(run, written));
+        self.numbers.push(number);
+        let frame = run.frame as usize;
+        if lists.runs.len() > 1 {
+            self.runs_of.push(run_index as u32);
+        }
+        let slot = self.bake(lists, &shape, frame);
+        self.slots.push(slot);
+    }
+
+    /// Appends the shapes of the positions that follow.
+    fn append(&mut self, mut piece: Self) {
+        let first = self.numbers.len();
+        let lengths = Form::ALL.map(|form| self.len_of(form));
+        let moved = |slot: &Slot| Slot::new(slot.form(), slot.index() + lengths[slot.form() as usize]);
+        self.slots.extend(piece.slots.iter().map(moved));
+        self.numbers.append(&mut piece.numbers);
+        self.materials.append(&mut piece.materials);
+        self.runs_of.append(&mut piece.runs_of);
+        self.spheres.append(&mut piece.spheres);
+        self.cuboids.append(&mut piece.cuboids);
+        self.cylinders.append(&mut piece.cylinders);
+        self.cones.append(&mut piece.cones);
+        self.triangles.append(&mut piece.triangles);
+        self.framed_spheres.append(&mut piece.framed_spheres);
+        self.framed_cuboids.append(&mut piece.framed_cuboids);
+        self.framed_cylinders.append(&mut piece.framed_cylinders);
+        self.framed_cones.append(&mut piece.framed_cones);
+        self.culls.append(first, piece.culls);
+    }
+
+    fn len_of(&self, form: Form) -> usize {
+        match form {
+            Form::Sphere => self.spheres.len(),
+            Form::Cuboid => self.cuboids.len(),
+            Form::Cylinder => self.cylinders.len(),
+            Form::Cone => self.cones.len(),
+            Form::Triangle => self.triangles.len(),
+            Form::FramedSphere => self.framed_spheres.len(),
+            Form::FramedCuboid => self.framed_cuboids.len(),
+            Form::FramedCylinder => self.framed_cylinders.len(),
+            Form::FramedCone => self.framed_cones.len(),
+        }
+    }
+
+    /// Ends the lists; slots that say nothing go.
+    fn finish(&mut self) {
+        let count = self.numbers.len();
+        self.culls.finish(count);
+        self.only = Form::ALL.into_iter().find(|&form| count > 0 && self.len_of(form) == count);
+        if self.only.is_some() {
+            self.slots = Vec::new();
+        }
+        self.spheres.shrink_to_fit();
+        self.cuboids.shrink_to_fit();
+        self.cylinders.shrink_to_fit();
+        self.cones.shrink_to_fit();
+        self.triangles.shrink_to_fit();
+    }
+
+    /// The form of the shape at `position` and its place in that form's list.
+    #[inline(always)]
+    pub fn slot(&self, position: u32) -> (Form, usize) {
+        match self.only {
+            Some(form) => (form, position as usize),
+            None => {
+                let slot = self.slots[position as usize];
+                (slot.form(), slot.index())
+            }
+        }
+    }
+
+    fn bake(&mut self, lists: &Lists, shape: &Shape, frame: usize) -> Slot {
+        let transform = lists.frames[frame];
+        let culls = lists.cull_frame.as_ref();
+        let world_from_object = &transform.world_from_object;
+        let similarity = if frame == 0 { Some(1.0) } else { transform.similarity_scale() };
+        fn put<T>(list: &mut Vec<T>, form: Form, value: T) -> Slot {
+            list.push(value);
+            Slot::new(form, list.len() - 1)
+        }
+        match shape {
+            Shape::Sphere(sphere) => {
+                let in_world = similarity.and_then(|scale| {
+                    Sphere::new(world_from_object.transform_point3(sphere.center()), sphere.radius() * scale)
+                        .ok()
+                });
+                match in_world {
+                    Some(sphere) => {
+                        self.cull_ball(culls, sphere.center(), sphere.radius());
+                        put(&mut self.spheres, Form::Sphere, sphere)
+                    }
+                    None => {
+                        self.cull_box(culls, shape, world_from_object);
+                        put(&mut self.framed_spheres, Form::FramedSphere, *sphere)
+                    }
+                }
+            }
+            Shape::Cuboid(cuboid) => {
+                self.cull_box(culls, shape, world_from_object);
+                match axis_aligned(cuboid, &transform) {
+                    Some(cuboid) => put(&mut self.cuboids, Form::Cuboid, cuboid),
+                    None => put(&mut self.framed_cuboids, Form::FramedCuboid, *cuboid),
+                }
+            }
+            Shape::Cylinder(cylinder) => match similarity {
+                Some(scale) => {
+                    let c = OrientedCylinder::from_object(cylinder, world_from_object, scale);
+                    self.cull_bar(culls, &Spine::along(c.base(), c.axis(), c.radius(), c.height()));
+                    put(&mut self.cylinders, Form::Cylinder, c)
+                }
+                None => {
+                    self.cull_framed_bar(
+                        culls,
+                        shape,
+                        world_from_object,
+                        cylinder.center(),
+                        cylinder.radius(),
+                    );
+                    put(&mut self.framed_cylinders, Form::FramedCylinder, *cylinder)
+                }
+            },
+            Shape::Cone(cone) => match similarity {
+                Some(scale) => {
+                    let c = OrientedCone::from_object(cone, world_from_object, scale);
+                    self.cull_bar(culls, &Spine::along(c.base(), c.axis(), c.radius(), c.height()));
+                    put(&mut self.cones, Form::Cone, c)
+                }
+                None => {
+                    self.cull_framed_bar(culls, shape, world_from_object, cone.center(), cone.radius());
+                    put(&mut self.framed_cones, Form::FramedCone, *cone)
+                }
+            },
+            Shape::Triangle(triangle) => {
+                let corners = triangle.vertices().map(|v| world_from_object.transform_point3(v));
+                if let Some(frame) = culls {
+                    self.culls.put_triangle(frame, self.slots.len(), &corners);
+                }
+                put(&mut self.triangles, Form::Triangle, corners)
+            }
+        }
+    }
+
+    fn cull_ball(&mut self, frame: Option<&Frame>, center: Vec3, radius: f64) {
+        if let Some(frame) = frame {
+            self.culls.put_ball(frame, self.slots.len(), center, radius);
+        }
+    }
+
+    fn cull_box(&mut self, frame: Option<&Frame>, shape: &Shape, world_from_object: &Affine) {
+        if let Some(frame) = frame {
+            self.culls.put_box(frame, self.slots.len(), &shape.world_bounds(world_from_object));
+        }
+    }
+
+    fn cull_bar(&mut self, frame: Option<&Frame>, spine: &Spine) {
+        if let Some(frame) = frame {
+            self.culls.put_bar(frame, self.slots.len(), spine);
+        }
+    }
+
+    /// A cylinder or cone that a general map has squeezed.
+    fn cull_framed_bar(
+        &mut self,
+        frame: Option<&Frame>,
+        shape: &Shape,
+        world_from_object: &Affine,
+        center: Vec3,
+        radius: f64,
+    ) {
+        match Spine::new(world_from_object, &shape.world_bounds(world_from_object), center, radius) {
+            Some(spine) => self.cull_bar(frame, &spine),
+            None => self.cull_box(frame, shape, world_from_object),
+        }
+    }
+
+    /// The bytes of all lists.
+    pub fn memory(&self) -> u64 {
+        fn bytes<T>(list: &[T]) -> u64 {
+            size_of_val(list) as u64
+        }
+        bytes(&self.slots)
+            + bytes(&self.numbers)
+            + bytes(&self.materials)
+            + bytes(&self.runs_of)
+            + bytes(&self.spheres)
+            + bytes(&self.cuboids)
+            + bytes(&self.cylinders)
+            + bytes(&self.cones)
+            + bytes(&self.triangles)
+            + bytes(&self.framed_spheres)
+            + bytes(&self.framed_cuboids)
+            + bytes(&self.framed_cylinders)
+            + bytes(&self.framed_cones)
+            + self.culls.memory()
+    }
+}
+
+impl Lists {
+    /// Lets go of the lists as written that nobody asks for any more, once every shape has been laid down: all
+    /// materials, and the spheres and boxes that stand in no group, whose baked form is the same.
+    pub fn let_go(&mut self) {
+        for (index, file) in self.files.iter_mut().enumerate() {
+            let in_world = |kind: ShapeKind| {
+                let mut runs =
+                    self.runs.iter().filter(|run| run.file.0 as usize == index && run.kind == kind);
+                runs.all(|run| run.frame == 0)
+            };
+            if in_world(ShapeKind::Sphere) {
+                file.spheres.shapes = Vec::new();
+            }
+            if in_world(ShapeKind::Cuboid) {
+                file.cuboids.shapes = Vec::new();
+            }
+            file.spheres.materials = Vec::new();
+            file.cuboids.materials = Vec::new();
+            file.cylinders.materials = Vec::new();
+            file.cones.materials = Vec::new();
+            file.triangles.materials = Vec::new();
+            file.indexed_triangles.materials = Vec::new();
+        }
+    }
+}
