@@ -31,7 +31,7 @@ pub fn path() -> &'static Path {
 }
 
 /// The members that the program is made of.
-const SOURCES: [&str; 6] = ["geometry", "image", "accel", "scene", "render", "cli"];
+const SOURCES: [&str; 7] = ["geometry", "image", "accel", "scene", "render", "grade", "cli"];
 
 fn modified(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).and_then(|meta| meta.modified()).ok()

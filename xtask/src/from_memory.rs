@@ -57,6 +57,7 @@ fn scene(spheres: Vec<Sphere>, camera: &[f64; 13]) -> Scene {
         index_of_refraction: 1.0,
         texture: None,
         text: String::new(),
+        weights: None,
     };
     file.materials = placed(dull).into_iter().collect();
     file.spheres.materials = vec![0; spheres.len()];

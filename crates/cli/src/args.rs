@@ -5,6 +5,12 @@ use clap::Parser;
 use clap::Subcommand;
 use std::path::PathBuf;
 
+use crate::check_args::CheckArgs;
+use crate::check_args::FormatArgs;
+use crate::judge_args::CompareArgs;
+use crate::judge_args::GradeArgs;
+use crate::reading_args::DialectName;
+use crate::reading_args::ReadingArgs;
 use crate::render_args::RenderArgs;
 use crate::values::TextOrJson;
 use crate::values::When;
@@ -20,7 +26,7 @@ use crate::values::When;
     subcommand_required = true,
     max_term_width = 100,
     after_help = "Exit codes: 0 done; 1 the scene, the picture or a file is at fault; 2 the command line is; \
-                  130 interrupted.",
+                  3 a comparison found too much; 130 interrupted.",
     after_long_help = PROGRAM_EXAMPLES
 )]
 pub struct Cli {
@@ -38,6 +44,7 @@ const PROGRAM_EXAMPLES: &str = "\
 Examples:
   dotray render slides.ray                    picture in slides.png, 640x480
   dotray render slides.ray slides.bmp 800 600
+  dotray check slides.ray                     all faults and warnings, with likely repairs
   dotray info slides.ray                      what is in the scene
   dotray dump --world slides.ray              its tree with all matrices
   dotray help render                          every option of `render`
@@ -46,6 +53,7 @@ Exit codes:
   0    done
   1    the scene, the picture or a file is at fault; nothing was written
   2    the command line is at fault; nothing was read
+  3    the pictures differ by more than is forgiven, or the graded program lost points
   130  interrupted (Ctrl-C); nothing was written
 
 Environment:
@@ -58,10 +66,20 @@ Environment:
 pub enum Command {
     /// Make a picture of a scene.
     Render(Box<RenderArgs>),
+    /// Tell every fault and warning of scenes, with place and likely repair.
+    Check(CheckArgs),
+    /// Put scene files into their canonical layout; numbers and comments stay as written.
+    Format(FormatArgs),
     /// Print a scene's tree: one line a group or shape, as the reader understood it.
     Dump(DumpArgs),
     /// Say what is in a scene: shapes, lights, materials, textures, bounds, camera.
     Info(InfoArgs),
+    /// Say how far two pictures are apart; 3 is the exit code where that is too far.
+    Compare(CompareArgs),
+    /// Run somebody else's ray tracer over a suite of scenes and grade its pictures.
+    Grade(GradeArgs),
+    /// Write a scene in another dialect, and say what could not be carried over.
+    Convert(ConvertArgs),
     /// Print a manual page, or the reference in Markdown.
     Man(ManArgs),
     /// Print a completion script for a shell.
@@ -78,6 +96,10 @@ pub struct DumpArgs {
     /// With each group also its cumulative matrices: objectToWorld and worldToObject.
     #[arg(long)]
     pub world: bool,
+
+    /// How the scene is read.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
 }
 
 /// `dotray info`.
@@ -90,6 +112,35 @@ pub struct InfoArgs {
     /// For people or for programs.
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
+
+    /// How the scene is read.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+}
+
+/// `dotray convert`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  dotray convert room.ray slides/room.ray         whatever room.ray is, as the slides have it
+  dotray convert slides.ray new.ray --to jhu      for the Johns Hopkins course of today
+  dotray convert old.ray - --from hmc             to standard output")]
+pub struct ConvertArgs {
+    /// The scene, or - for standard input.
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+
+    /// The new file, or - for standard output. Included files are written into it.
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+
+    /// The dialect of IN; auto finds out from the file and what it includes.
+    #[arg(long, value_enum, value_name = "NAME", default_value_t)]
+    pub from: DialectName,
+
+    /// The dialect of OUT: slides, uva or jhu; auto is slides.
+    #[arg(long, value_enum, value_name = "NAME", default_value_t)]
+    pub to: DialectName,
 }
 
 /// `dotray man`.

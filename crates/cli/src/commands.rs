@@ -1,7 +1,12 @@
 //! The commands, one file each.
 
+mod check;
+mod compare;
 mod completions;
+mod convert;
 mod dump;
+mod format;
+mod grade;
 mod info;
 mod man;
 mod render;
@@ -14,8 +19,13 @@ use crate::exit::Failure;
 pub fn run(cli: &Cli) -> Result<(), Failure> {
     match &cli.command {
         Command::Render(typed) => render::run(typed, cli.color),
+        Command::Check(typed) => check::run(typed, cli.color),
+        Command::Format(typed) => format::run(typed, cli.color),
         Command::Dump(typed) => dump::run(typed, cli.color),
         Command::Info(typed) => info::run(typed, cli.color),
+        Command::Convert(typed) => convert::run(typed, cli.color),
+        Command::Grade(typed) => grade::run(typed),
+        Command::Compare(typed) => compare::run(typed),
         Command::Man(typed) => man::run(typed),
         Command::Completions(typed) => completions::run(typed),
     }

@@ -17,6 +17,8 @@ pub enum Failure {
     Failed(String),
     /// The same, and the messages are printed already.
     Reported,
+    /// Two pictures differ by more than is forgiven, which is printed already: exit code 3.
+    Over,
     /// Ctrl-C: exit code 130, as shells report it.
     Interrupted,
     /// Whoever read our standard output has gone, as `head` does: no fault, exit code 0.
@@ -41,6 +43,7 @@ impl Failure {
                 ExitCode::from(1)
             }
             Self::Reported => ExitCode::from(1),
+            Self::Over => ExitCode::from(3),
             Self::Interrupted => {
                 say("interrupted; nothing was written");
                 ExitCode::from(130)

@@ -21,8 +21,10 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::exit::Failure;
+use crate::exit::say;
 use crate::meaning::Place;
 use crate::messages::Messages;
+use crate::reading_args::ReadingArgs;
 
 /// The disk with a clock: what reading took.
 #[derive(Debug, Default)]
@@ -45,8 +47,14 @@ impl TimedDisk {
     }
 }
 
+/// Stands for a texture whose file is nowhere: no file can have this name.
+const WHITE: &str = "\0white.ppm";
+
 impl Files for TimedDisk {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        if path == Path::new(WHITE) {
+            return Ok(b"P6 1 1 255\n\xff\xff\xff".to_vec());
+        }
         self.timed(|| Disk.read(path))
     }
 
@@ -86,10 +94,10 @@ impl Written {
 }
 
 /// Reads a scene. Where it has errors, prints all messages and stops.
-pub fn read(place: &Place, messages: Messages) -> Result<Written, Failure> {
+pub fn read(place: &Place, reading: ReadingArgs, messages: Messages) -> Result<Written, Failure> {
     let disk = TimedDisk::default();
     let start = Instant::now();
-    let options = LoadOptions::default();
+    let options = LoadOptions { dialect: reading.dialect.chosen(), ..LoadOptions::default() };
     let loaded = match place {
         Place::File(path) => load(path, &disk, &options),
         Place::Standard => {
@@ -99,12 +107,15 @@ pub fn read(place: &Place, messages: Messages) -> Result<Written, Failure> {
             load_text("<stdin>", text, &disk, &options)
         }
     };
-    let reading = disk.seconds();
-    let parsing = (start.elapsed().as_secs_f64() - reading).max(0.0);
-    let Loaded { scene, diagnostics, sources, .. } = loaded;
+    let read = disk.seconds();
+    let parsing = (start.elapsed().as_secs_f64() - read).max(0.0);
+    let Loaded { scene, diagnostics, sources, dialect, because, .. } = loaded;
+    if let Some(because) = because.filter(|_| !messages.quiet) {
+        say(&format!("note: read in the dialect `{dialect}`: {because} (`--dialect NAME` says otherwise)"));
+    }
     match scene {
         Some(scene) => {
-            let seconds = vec![("read", reading), ("parse", parsing)];
+            let seconds = vec![("read", read), ("parse", parsing)];
             Ok(Written { scene, warnings: diagnostics, sources, disk, seconds })
         }
         None => {
@@ -114,7 +125,8 @@ pub fn read(place: &Place, messages: Messages) -> Result<Written, Failure> {
     }
 }
 
-fn standard_input(limit: u64) -> io::Result<Vec<u8>> {
+/// The whole of standard input, if it has at most `limit` bytes.
+pub fn standard_input(limit: u64) -> io::Result<Vec<u8>> {
     let mut text = Vec::new();
     let read = io::stdin().lock().take(limit.saturating_add(1)).read_to_end(&mut text)?;
     if read as u64 > limit { Err(io::Error::other(format!("more than {limit} bytes"))) } else { Ok(text) }
@@ -135,8 +147,8 @@ pub struct Understood {
 }
 
 /// Reads and resolves a scene and prints all messages; stops where there is an error.
-pub fn understand(place: &Place, messages: Messages) -> Result<Understood, Failure> {
-    let read = read(place, messages)?;
+pub fn understand(place: &Place, reading: ReadingArgs, messages: Messages) -> Result<Understood, Failure> {
+    let read = read(place, reading, messages)?;
     let text_bytes = read.text_bytes();
     let Written { scene, warnings, sources, disk, mut seconds } = read;
     let start = Instant::now();
@@ -147,4 +159,17 @@ pub fn understand(place: &Place, messages: Messages) -> Result<Understood, Failu
     messages.print(&diagnostics, &sources);
     let resolved = outcome.resolved.ok_or(Failure::Reported)?;
     Ok(Understood { resolved, sources, disk, text_bytes, seconds })
+}
+
+/// Puts white in the place of textures whose files are nowhere, and says which.
+pub fn whiten(resolved: &mut Resolved, quiet: bool) {
+    for texture in &mut resolved.textures {
+        if texture.candidates.iter().any(|path| path.exists()) {
+            continue;
+        }
+        texture.candidates = vec![PathBuf::from(WHITE)];
+        if !quiet {
+            say(&format!("warning: the texture `{}` was not found; white takes its place", texture.name));
+        }
+    }
 }

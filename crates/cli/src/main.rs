@@ -4,13 +4,23 @@
 
 mod values;
 
+mod reading_args;
+
 mod render_args;
+
+mod check_args;
+
+mod judge_args;
 
 mod args;
 
 mod exit;
 
 mod meaning;
+
+mod scenes;
+
+mod diff;
 
 mod storage;
 
@@ -25,6 +35,10 @@ mod progress;
 mod cost;
 
 mod input;
+
+mod textures;
+
+mod findings;
 
 mod output;
 

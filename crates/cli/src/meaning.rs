@@ -3,6 +3,7 @@
 use dotray::accel::Kind;
 use dotray::accel::Quality;
 use dotray::image::Format;
+use dotray::image::compare::profile::Profile;
 use dotray::render::Shadows;
 use dotray::render::TextureFilter;
 use std::path::Path;
@@ -12,6 +13,7 @@ use crate::values::Accel;
 use crate::values::Build;
 use crate::values::Filter;
 use crate::values::FormatName;
+use crate::values::ProfileName;
 use crate::values::ShadowMode;
 
 /// A file, or the standard stream that `-` stands for.
@@ -43,6 +45,15 @@ pub fn named(name: FormatName) -> Format {
         FormatName::Exr => Format::Exr,
         FormatName::Hdr => Format::Hdr,
         FormatName::Pfm => Format::Pfm,
+    }
+}
+
+/// The profile of a word.
+pub fn profile(typed: ProfileName) -> Profile {
+    match typed {
+        ProfileName::Exact => Profile::Exact,
+        ProfileName::Strict => Profile::Strict,
+        ProfileName::Lenient => Profile::Lenient,
     }
 }
 

@@ -19,20 +19,21 @@ pub struct Messages {
     pub quiet: bool,
 }
 
+/// What `--color` means for a stream that is a terminal or is not.
+pub fn wants_color(color: When, is_terminal: bool) -> bool {
+    let unwanted = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    match color {
+        When::Always => true,
+        When::Never => false,
+        When::Auto => is_terminal && !unwanted("NO_COLOR") && !dumb,
+    }
+}
+
 impl Messages {
     /// What `--color` and `--quiet` mean here.
     pub fn new(color: When, quiet: bool) -> Self {
-        let auto = || {
-            let unwanted = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-            let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-            io::stderr().is_terminal() && !unwanted("NO_COLOR") && !dumb
-        };
-        let color = match color {
-            When::Always => true,
-            When::Never => false,
-            When::Auto => auto(),
-        };
-        Self { color, quiet }
+        Self { color: wants_color(color, io::stderr().is_terminal()), quiet }
     }
 
     /// Prints messages about a scene to standard error; true if there is an error among them.

@@ -101,6 +101,7 @@ fn options(typed: &RenderArgs) -> Result<Options, Failure> {
         Crop { x, y, width, height }
     });
     Ok(Options {
+        transparent: false,
         width,
         height,
         crop,

@@ -3,6 +3,7 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use crate::reading_args::ReadingArgs;
 use crate::values::Aa;
 use crate::values::Accel;
 use crate::values::Build;
@@ -10,6 +11,7 @@ use crate::values::CropArg;
 use crate::values::Depth;
 use crate::values::Filter;
 use crate::values::FormatName;
+use crate::values::MissingTexture;
 use crate::values::ShadowMode;
 use crate::values::Size;
 use crate::values::TextOrJson;
@@ -101,6 +103,14 @@ pub struct RenderArgs {
     #[arg(long, value_enum, value_name = "FILTER", default_value_t, help_heading = LIGHT)]
     pub texture_filter: Filter,
 
+    /// What becomes of a texture whose file is nowhere.
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t, help_heading = LIGHT)]
+    pub missing_texture: MissingTexture,
+
+    /// How the scene is read.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+
     /// How the nearest shape is found. The picture does not depend on it.
     #[arg(long, value_enum, value_name = "KIND", default_value_t, help_heading = SPEED)]
     pub accel: Accel,
@@ -140,6 +150,8 @@ Examples:
   dotray render slides.ray                            slides.png, 640x480
   dotray render slides.ray slides.bmp 800 600 7 0.01  the six values in their places
   dotray render slides.ray --size 1920x1080 --aa adaptive -o big.png
+  dotray render --in room.ray --out room.bmp --width 500 --height 500 --rLimit 5 --cLimit 0.0001
+                                                      as courses call their programs
   dotray render slides.ray hdr.exr                    unclamped floats
   dotray render slides.ray --crop 100,50,64,64        a part, for a closer look
   dotray render slides.ray --stats --threads 1        what it cost

@@ -121,6 +121,28 @@ pub enum Filter {
     Nearest,
 }
 
+/// What becomes of a texture whose file is nowhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, ValueEnum)]
+pub enum MissingTexture {
+    /// No picture is made
+    #[default]
+    Error,
+    /// White takes its place
+    White,
+}
+
+/// What a comparison forgives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, ValueEnum)]
+pub enum ProfileName {
+    /// The rounding to 8 bits
+    Exact,
+    /// Single pixels on edges besides
+    #[default]
+    Strict,
+    /// Noise and other oversampling besides
+    Lenient,
+}
+
 /// Accelerators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, ValueEnum)]
 pub enum Accel {

@@ -26,11 +26,12 @@ pub struct Surface {
 }
 
 /// The surface points that one ray meets on one shape, in ascending order of t (which may be negative):
-/// at most two, for every shape is convex.
+/// at most two on a convex shape, at most four on a torus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossings {
-    /// Places not in use hold t = −∞, which lies in no range, so that `first_within` needs no count.
-    hits: [Hit; 2],
+    /// Places not in use hold t = −∞, which lies in no range, so that `first_within` asks for the count only where
+    /// the first two places hold no answer.
+    hits: [Hit; 4],
     count: u8,
 }
 
@@ -38,18 +39,18 @@ const UNUSED: Hit = Hit { t: f64::NEG_INFINITY, face: 0 };
 
 impl Crossings {
     /// No crossing.
-    pub const NONE: Self = Self { hits: [UNUSED; 2], count: 0 };
+    pub const NONE: Self = Self { hits: [UNUSED; 4], count: 0 };
 
     /// One crossing.
     #[inline]
     pub const fn one(hit: Hit) -> Self {
-        Self { hits: [hit, UNUSED], count: 1 }
+        Self { hits: [hit, UNUSED, UNUSED, UNUSED], count: 1 }
     }
 
     /// Where the ray enters and where it leaves a convex shape; `enter.t <= leave.t`.
     #[inline]
     pub const fn two(enter: Hit, leave: Hit) -> Self {
-        Self { hits: [enter, leave], count: 2 }
+        Self { hits: [enter, leave, UNUSED, UNUSED], count: 2 }
     }
 
     /// The two ends of the part of the line inside a convex shape; none where they come in the wrong order
@@ -69,7 +70,24 @@ impl Crossings {
     /// The first one with `t_min < t <= t_max`.
     #[inline]
     pub fn first_within(&self, t_min: f64, t_max: f64) -> Option<Hit> {
-        self.hits.into_iter().find(|hit| t_min < hit.t && hit.t <= t_max)
+        let within = |hit: &Hit| t_min < hit.t && hit.t <= t_max;
+        let [first, second, rest @ ..] = self.hits;
+        if within(&first) {
+            return Some(first);
+        }
+        if within(&second) {
+            return Some(second);
+        }
+        if self.count > 2 { rest.into_iter().find(within) } else { None }
+    }
+
+    /// Appends a crossing, the others having come in ascending order; a fifth one is passed over.
+    pub(crate) fn push(&mut self, hit: Hit) {
+        let last = self.as_slice().last().map_or(f64::NEG_INFINITY, |last| last.t);
+        if let Some(place) = self.hits.get_mut(usize::from(self.count)) {
+            *place = Hit { t: hit.t.max(last), ..hit };
+            self.count += 1;
+        }
     }
 }
 
@@ -90,6 +108,18 @@ mod tests {
         assert_eq!(both.first_within(-1.0, 2.0), Some(FAR));
         assert_eq!(both.first_within(-1.0, 1.9), None);
         assert_eq!(both.first_within(2.0, f64::INFINITY), None);
+    }
+
+    #[test]
+    fn four_are_found_in_their_order() {
+        let mut all = Crossings::NONE;
+        for t in [-1.0, 2.0, 3.0, 5.0, 7.0] {
+            all.push(Hit { t, face: 0 });
+        }
+        let first = |t_min: f64, t_max: f64| all.first_within(t_min, t_max).map(|hit| hit.t);
+        assert_eq!(all.as_slice().len(), 4);
+        assert_eq!((first(-2.0, 9.0), first(-1.0, 9.0), first(2.0, 9.0)), (Some(-1.0), Some(2.0), Some(3.0)));
+        assert_eq!((first(3.0, 9.0), first(3.0, 4.0), first(5.0, 9.0)), (Some(5.0), None, None));
     }
 
     #[test]

@@ -20,8 +20,9 @@ pub use aabb::Aabb;
 pub use hit::{Crossings, Hit, Surface};
 pub use ray::Ray;
 pub use shape::{
-    Cone, Cuboid, Cylinder, OrientedCone, OrientedCylinder, Shape, ShapeError, Sphere, Triangle,
+    Cone, Cuboid, Cylinder, OpenSide, OrientedCone, OrientedCylinder, Shape, ShapeError, Sphere, Torus,
+    Triangle,
 };
 pub use shape::{TriangleRay, face_normal, interpolated_normal, intersect_vertices};
 pub use transform::{SingularMatrix, Transform};
-pub use vector::{Affine, Mat3, Mat4, Vec2, Vec3};
+pub use vector::{Affine, Mat3, Mat4, Vec2, Vec3, Vec4};

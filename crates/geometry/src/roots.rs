@@ -55,11 +55,79 @@ pub fn from_discriminant(a: f64, h: f64, c: f64, discriminant: f64) -> (f64, f64
     (small, q / a)
 }
 
+/// The root of a function that is monotone between `low` and `high`, where its signs differ. `function` gives value
+/// and slope; `value_low` is its value at `low`. Newton's steps where they stay inside the bracket and shrink fast
+/// enough, halving otherwise.
+pub(crate) fn bracketed(function: impl Fn(f64) -> (f64, f64), low: f64, high: f64, value_low: f64) -> f64 {
+    /// Halving alone reaches neighbouring numbers in fewer steps from brackets of size 1.
+    const MOST_STEPS: usize = 120;
+    let rises = value_low <= 0.0;
+    let (mut low, mut high) = (low, high);
+    let mut x = 0.5 * (low + high);
+    let mut last_step = high - low;
+    for _ in 0..MOST_STEPS {
+        let (value, slope) = function(x);
+        if value == 0.0 {
+            return x;
+        }
+        if (value < 0.0) == rises {
+            low = x
+        } else {
+            high = x
+        }
+        let newton = x - value / slope;
+        let inside = low < newton && newton < high;
+        let next = if inside && (newton - x).abs() <= 0.5 * last_step { newton } else { 0.5 * (low + high) };
+        last_step = (next - x).abs();
+        if last_step <= f64::EPSILON * x.abs() || next <= low || high <= next {
+            return next.clamp(low, high);
+        }
+        x = next;
+    }
+    x
+}
+
+/// Where the quartic s⁴ + c₀ s³ + c₁ s² + c₂ s + c₃ has its turning points between `low` and `high`: up to three,
+/// ascending, and how many. Each lies between neighbouring roots of the next derivative, down to the line.
+pub(crate) fn quartic_turns(c: [f64; 4], low: f64, high: f64) -> ([f64; 3], usize) {
+    let slope = |s: f64| ((4.0 * s + 3.0 * c[0]) * s + 2.0 * c[1]) * s + c[2];
+    let bend = |s: f64| (12.0 * s + 6.0 * c[0]) * s + 2.0 * c[1];
+    let mut ends = [low, low, high];
+    if let Some((first, second)) = quadratic(12.0, 3.0 * c[0], 2.0 * c[1]) {
+        ends = [first.clamp(low, high), second.clamp(low, high), high];
+    }
+    let (mut turns, mut count) = ([0.0; 3], 0);
+    let (mut from, mut value_from) = (low, slope(low));
+    for to in ends {
+        let value = slope(to);
+        if (value_from > 0.0) != (value > 0.0) {
+            turns[count] = bracketed(|s| (slope(s), bend(s)), from, to, value_from);
+            count += 1;
+        }
+        (from, value_from) = (to, value);
+    }
+    (turns, count)
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::quadratic;
+    use super::quartic_turns;
+
+    #[test]
+    fn turns_of_quartics_are_found() {
+        // (s − 0.9)(s − 0.1)(s + 0.5) · 4 is the slope.
+        let (turns, count) = quartic_turns([-4.0 / 3.0 * 0.5, -0.82, 0.18, 0.0], -1.0, 1.0);
+        assert_eq!(count, 3);
+        for (turn, expected) in turns.into_iter().zip([-0.5, 0.1, 0.9]) {
+            assert!((turn - expected).abs() < 1e-15, "{turns:?}");
+        }
+        assert_eq!(quartic_turns([0.0; 4], -1.0, 1.0).1, 1);
+        assert_eq!(quartic_turns([0.0, 1.0, 0.0, 0.0], -1.0, 1.0), ([0.0; 3], 1));
+        assert_eq!(quartic_turns([0.0, 0.0, 9.0, 0.0], -1.0, 1.0).1, 0);
+    }
 
     #[test]
     fn knows_simple_roots() {

@@ -5,13 +5,17 @@ mod round;
 mod cone;
 mod cuboid;
 mod cylinder;
+mod open;
 mod sphere;
+mod torus;
 mod triangle;
 
 pub use cone::{Cone, OrientedCone};
 pub use cuboid::Cuboid;
 pub use cylinder::{Cylinder, OrientedCylinder};
+pub use open::OpenSide;
 pub use sphere::Sphere;
+pub use torus::Torus;
 pub use triangle::{Triangle, TriangleRay, face_normal, interpolated_normal, intersect_vertices};
 
 use crate::aabb::Aabb;
@@ -62,6 +66,10 @@ pub enum Shape {
     Cone(Cone),
     /// A triangle with normals and texture coordinates at its corners.
     Triangle(Triangle),
+    /// A torus about y.
+    Torus(Torus),
+    /// A cylinder or cone without its discs.
+    Open(OpenSide),
 }
 
 /// One line for each question that every shape answers.
@@ -73,6 +81,8 @@ macro_rules! each_shape {
             Shape::Cylinder($inner) => $answer,
             Shape::Cone($inner) => $answer,
             Shape::Triangle($inner) => $answer,
+            Shape::Torus($inner) => $answer,
+            Shape::Open($inner) => $answer,
         }
     };
 }

@@ -25,7 +25,13 @@ fn surface_point(shape: &Shape, part: u8, s: f64, t: f64) -> Vec3 {
         }
         Shape::Cone(cone) if part == 0 => cone.center() + Vec3::Y * (0.5 * cone.height()),
         Shape::Cone(cone) => cone.center() + round * cone.radius() - Vec3::Y * (0.5 * cone.height()),
+        Shape::Torus(torus) => {
+            let across = t * std::f64::consts::TAU;
+            let radius = torus.ring() + torus.tube() * libm::cos(across);
+            torus.center() + round * radius + Vec3::Y * (torus.tube() * libm::sin(across))
+        }
         Shape::Triangle(triangle) => triangle.vertices()[usize::from(part % 3)],
+        Shape::Open(_) => Vec3::NAN,
     }
 }
 
@@ -97,8 +103,8 @@ proptest! {
         let mut reached = Aabb::EMPTY;
         for part in 0..3 {
             for i in 0..=200 {
-                for j in 0..=(if matches!(shape, Shape::Sphere(_)) { 100 } else { 2 }) {
-                    let steps = if matches!(shape, Shape::Sphere(_)) { 100.0 } else { 2.0 };
+                for j in 0..=(if matches!(shape, Shape::Sphere(_) | Shape::Torus(_)) { 100 } else { 2 }) {
+                    let steps = if matches!(shape, Shape::Sphere(_) | Shape::Torus(_)) { 100.0 } else { 2.0 };
                     let (s, t) = (f64::from(i) / 200.0, f64::from(j) / steps);
                     reached = reached.grown(to_world.transform_point3(surface_point(&shape, part, s, t)));
                 }

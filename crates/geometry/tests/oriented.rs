@@ -48,7 +48,12 @@ fn check(
 fn normal_is_certain(shape: &Shape, point: Vec3) -> bool {
     match shape {
         Shape::Cone(cone) => cone.center().y + cone.height() * 0.5 - point.y > 0.05 * cone.height(),
-        Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Cylinder(_) | Shape::Triangle(_) => true,
+        Shape::Sphere(_)
+        | Shape::Cuboid(_)
+        | Shape::Cylinder(_)
+        | Shape::Triangle(_)
+        | Shape::Torus(_)
+        | Shape::Open(_) => true,
     }
 }
 

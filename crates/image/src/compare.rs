@@ -1,4 +1,16 @@
-//! How far two pictures are apart.
+//! How far two pictures are apart: differences of samples, of blocks, and as the eye sees them.
+
+mod filter;
+
+mod flip_color;
+
+pub mod flip;
+
+pub mod ssim;
+
+pub mod histogram;
+
+pub mod profile;
 
 use crate::error::ImageError;
 use crate::image::Channels;
@@ -83,6 +95,18 @@ fn sizes_differ(a: &Image, b: &Image) -> Option<ImageError> {
     })
 }
 
+/// A sample as a screen shows it: between 0 and 1, and black where it is no number.
+fn shown(sample: f32) -> f64 {
+    let sample = f64::from(sample);
+    if sample.is_nan() { 0.0 } else { sample.clamp(0.0, 1.0) }
+}
+
+/// The differences of red, green and blue, pixel by pixel.
+fn channel_distances(a: &Image, b: &Image) -> impl Iterator<Item = [f64; 3]> {
+    let pairs = rgba_pixels(a).zip(rgba_pixels(b));
+    pairs.map(|([r, g, b, _], [r2, g2, b2, _])| [distance(r, r2), distance(g, g2), distance(b, b2)])
+}
+
 fn rgba_pixels(image: &Image) -> impl Iterator<Item = [f32; 4]> {
     image.samples().chunks_exact(image.channels().count()).map(|pixel| {
         let mut rgba = [1.0; 4];
@@ -97,6 +121,32 @@ fn distance(a: f32, b: f32) -> f64 {
     }
     let difference = (f64::from(a) - f64::from(b)).abs();
     if difference.is_nan() { f64::INFINITY } else { difference }
+}
+
+/// An 8x8 block and how far it is off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block {
+    /// The mean absolute difference of its pixels in the channel where that is greatest.
+    pub difference: f64,
+    /// Column and row of its upper left pixel.
+    pub at: (usize, usize),
+}
+
+/// The 8x8 block that differs most in red, green or blue. Small pictures are one block; the last blocks of a row and
+/// of a column are pushed inwards, so that all are of full size.
+///
+/// # Errors
+/// [`ImageError::SizesDiffer`] if the sizes differ.
+pub fn largest_block(a: &Image, b: &Image) -> Result<Block, ImageError> {
+    if let Some(error) = sizes_differ(a, b) {
+        return Err(error);
+    }
+    let pixels = channel_distances(a, b).collect();
+    let differences = Differences { width: a.width(), height: a.height(), pixels };
+    let blocks: Vec<_> =
+        differences.blocks(|d| d).into_iter().map(|(mean, at)| (greatest_channel(mean), at)).collect();
+    let (difference, at) = worst_block(&blocks);
+    Ok(Block { difference, at })
 }
 
 /// What a picture must fulfil to count as equal to a reference.
@@ -332,8 +382,27 @@ fn difference_of(left: [f32; 4], right: [f32; 4]) -> [f32; 4] {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// Two pictures of smooth colours and of a shifted disc.
+    pub(crate) fn gradient(width: usize, height: usize) -> (Image, Image) {
+        let picture = |shift: f32| {
+            let pixels = (0..width * height).flat_map(|place| {
+                let (x, y) = ((place % width) as f32, (place / width) as f32);
+                let (cx, cy) = (x - 0.5 * width as f32 - shift, y - 0.5 * height as f32);
+                let inside = cx * cx + cy * cy < 64.0;
+                let step = |value: f32| (255.0 * value).round() / 255.0;
+                if inside {
+                    [0.9, 0.2, 0.1].map(step)
+                } else {
+                    [x / width as f32, 0.4, y / height as f32].map(step)
+                }
+            });
+            Image::from_samples(width, height, Channels::Rgb, pixels.collect()).unwrap()
+        };
+        (picture(0.0), picture(3.0))
+    }
 
     fn grey(width: usize, height: usize, value: f32) -> Image {
         Image::from_samples(width, height, Channels::Rgb, vec![value; width * height * 3]).unwrap()

@@ -53,6 +53,7 @@ pub(crate) struct Baked {
     pub framed_cuboids: Vec<Cuboid>,
     pub framed_cylinders: Vec<Cylinder>,
     pub framed_cones: Vec<Cone>,
+    pub framed_others: Vec<Shape>,
     pub culls: Culls,
 }
 
@@ -69,6 +70,12 @@ pub fn written_shape<'a>(runs: &'a [Run], files: &[SceneFile], number: u32) -> (
 /// The run that holds shape `number`.
 pub fn run_of(runs: &[Run], number: u32) -> usize {
     runs.partition_point(|run| run.first_shape <= number) - 1
+}
+
+/// Puts a shape into the list of its form.
+fn put<T>(list: &mut Vec<T>, form: Form, value: T) -> Slot {
+    list.push(value);
+    Slot::new(form, list.len() - 1)
 }
 
 /// How many shapes one thread bakes at a time.
@@ -159,6 +166,7 @@ impl Baked {
         self.framed_cuboids.append(&mut piece.framed_cuboids);
         self.framed_cylinders.append(&mut piece.framed_cylinders);
         self.framed_cones.append(&mut piece.framed_cones);
+        self.framed_others.append(&mut piece.framed_others);
         self.culls.append(first, piece.culls);
     }
 
@@ -173,6 +181,7 @@ impl Baked {
             Form::FramedCuboid => self.framed_cuboids.len(),
             Form::FramedCylinder => self.framed_cylinders.len(),
             Form::FramedCone => self.framed_cones.len(),
+            Form::FramedOther => self.framed_others.len(),
         }
     }
 
@@ -208,27 +217,8 @@ impl Baked {
         let culls = lists.cull_frame.as_ref();
         let world_from_object = &transform.world_from_object;
         let similarity = if frame == 0 { Some(1.0) } else { transform.similarity_scale() };
-        fn put<T>(list: &mut Vec<T>, form: Form, value: T) -> Slot {
-            list.push(value);
-            Slot::new(form, list.len() - 1)
-        }
         match shape {
-            Shape::Sphere(sphere) => {
-                let in_world = similarity.and_then(|scale| {
-                    Sphere::new(world_from_object.transform_point3(sphere.center()), sphere.radius() * scale)
-                        .ok()
-                });
-                match in_world {
-                    Some(sphere) => {
-                        self.cull_ball(culls, sphere.center(), sphere.radius());
-                        put(&mut self.spheres, Form::Sphere, sphere)
-                    }
-                    None => {
-                        self.cull_box(culls, shape, world_from_object);
-                        put(&mut self.framed_spheres, Form::FramedSphere, *sphere)
-                    }
-                }
-            }
+            Shape::Sphere(sphere) => self.bake_sphere(culls, shape, sphere, similarity, world_from_object),
             Shape::Cuboid(cuboid) => {
                 self.cull_box(culls, shape, world_from_object);
                 match axis_aligned(cuboid, &transform) {
@@ -270,6 +260,34 @@ impl Baked {
                     self.culls.put_triangle(frame, self.slots.len(), &corners);
                 }
                 put(&mut self.triangles, Form::Triangle, corners)
+            }
+            Shape::Torus(_) | Shape::Open(_) => {
+                self.cull_box(culls, shape, world_from_object);
+                put(&mut self.framed_others, Form::FramedOther, *shape)
+            }
+        }
+    }
+
+    /// A sphere that stays one in the world, or an ellipsoid.
+    fn bake_sphere(
+        &mut self,
+        culls: Option<&Frame>,
+        shape: &Shape,
+        sphere: &Sphere,
+        similarity: Option<f64>,
+        world_from_object: &Affine,
+    ) -> Slot {
+        let in_world = similarity.and_then(|scale| {
+            Sphere::new(world_from_object.transform_point3(sphere.center()), sphere.radius() * scale).ok()
+        });
+        match in_world {
+            Some(sphere) => {
+                self.cull_ball(culls, sphere.center(), sphere.radius());
+                put(&mut self.spheres, Form::Sphere, sphere)
+            }
+            None => {
+                self.cull_box(culls, shape, world_from_object);
+                put(&mut self.framed_spheres, Form::FramedSphere, *sphere)
             }
         }
     }
@@ -325,6 +343,7 @@ impl Baked {
             + bytes(&self.framed_cuboids)
             + bytes(&self.framed_cylinders)
             + bytes(&self.framed_cones)
+            + bytes(&self.framed_others)
             + self.culls.memory()
     }
 }
@@ -351,6 +370,8 @@ impl Lists {
             file.cones.materials = Vec::new();
             file.triangles.materials = Vec::new();
             file.indexed_triangles.materials = Vec::new();
+            file.tori.materials = Vec::new();
+            file.open_sides.materials = Vec::new();
         }
     }
 }

@@ -156,6 +156,11 @@ impl Caster {
         self.accelerator.bounds()
     }
 
+    /// The accelerator's figures; this looks at every node.
+    pub fn accelerator_stats(&self) -> dotray_accel::Stats {
+        self.accelerator.stats()
+    }
+
     /// The bytes of shapes and accelerator.
     pub fn memory(&self) -> u64 {
         let (baked, written) = self.shapes.memory();

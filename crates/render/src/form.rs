@@ -25,10 +25,12 @@ pub(crate) enum Form {
     FramedCylinder,
     /// A cone under any other map.
     FramedCone,
+    /// A shape that is rare, under any map.
+    FramedOther,
 }
 
 impl Form {
-    pub(crate) const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Sphere,
         Self::Cuboid,
         Self::Cylinder,
@@ -38,6 +40,7 @@ impl Form {
         Self::FramedCuboid,
         Self::FramedCylinder,
         Self::FramedCone,
+        Self::FramedOther,
     ];
 }
 

@@ -69,10 +69,15 @@ impl Lamp {
         if !(distance > 0.0 && distance.is_finite()) {
             return None;
         }
+        let strength = self.color * self.fading(distance);
+        Some(Incident { towards: offset / distance, distance, strength })
+    }
+
+    /// F_ATTEN
+    fn fading(&self, distance: f64) -> f64 {
         let a = &self.attenuation;
         let sum = a.constant + a.linear * distance + a.quadratic * (distance * distance);
-        let strength = if sum > 0.0 { self.color * (1.0 / sum) } else { self.color };
-        Some(Incident { towards: offset / distance, distance, strength })
+        if sum > 0.0 { 1.0 / sum } else { 1.0 }
     }
 }
 
@@ -113,6 +118,25 @@ impl Light {
         }
     }
 
+    /// L_i: its colour.
+    pub fn color(&self) -> Vec3 {
+        match self {
+            Self::Point(lamp) | Self::Spot { lamp, .. } | Self::Area { lamp, .. } => lamp.color,
+            Self::Directional { color, .. } => *color,
+        }
+    }
+
+    /// F_SPOT and F_ATTEN in what it sends: the factors of [`Incident::strength`] besides the colour.
+    pub fn factors(&self, incident: &Incident) -> (f64, f64) {
+        match self {
+            Self::Point(lamp) | Self::Area { lamp, .. } => (1.0, lamp.fading(incident.distance)),
+            Self::Spot { lamp, axis, exponent, .. } => {
+                (fall_off(-incident.towards.dot(*axis), *exponent), lamp.fading(incident.distance))
+            }
+            Self::Directional { .. } => (1.0, 1.0),
+        }
+    }
+
     /// What sample `index` of `count` sends to `point`; `None` where that is nothing.
     pub fn incident(&self, point: Vec3, index: u32, count: u32) -> Option<Incident> {
         match self {
@@ -123,7 +147,7 @@ impl Light {
                 if cosine < *cos_cutoff {
                     return None;
                 }
-                incident.strength *= libm::pow(cosine.max(0.0), *exponent);
+                incident.strength *= fall_off(cosine, *exponent);
                 Some(incident)
             }
             Self::Directional { color, towards } => {
@@ -137,6 +161,11 @@ impl Light {
             }
         }
     }
+}
+
+/// F_SPOT inside of the cone.
+fn fall_off(cosine: f64, exponent: f64) -> f64 {
+    libm::pow(cosine.max(0.0), exponent)
 }
 
 /// A place in the unit disc: `count` places by the golden angle, equal areas each (H. Vogel, "A better way to

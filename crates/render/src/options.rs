@@ -82,6 +82,9 @@ pub struct Options {
     pub texture_filter: TextureFilter,
     /// Point lights that stand for one `#light_area`.
     pub light_samples: u32,
+    /// The picture has an alpha channel: the share of a pixel's samples whose eye rays meet something. Eye rays that
+    /// meet nothing then give no colour; mirrored and refracted ones see the background as ever.
+    pub transparent: bool,
     /// Threads; `None` for one a core. The picture does not depend on it.
     pub threads: Option<usize>,
     /// The edge of a tile in pixels. The picture does not depend on it.
@@ -100,6 +103,7 @@ impl Default for Options {
             shadows: Shadows::Filtered,
             texture_filter: TextureFilter::Bilinear,
             light_samples: 64,
+            transparent: false,
             threads: None,
             tile_size: 32,
         }

@@ -2,7 +2,43 @@
 //! a place has.
 
 use dotray_geometry::Vec3;
+use dotray_geometry::Vec4;
 use std::collections::HashMap;
+use std::iter::Sum;
+use std::ops::Add;
+use std::ops::Div;
+use std::ops::Mul;
+
+/// What a sample is: a colour, or a colour times its alpha and that alpha.
+pub trait Sample:
+    Copy
+    + PartialEq
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+    + for<'a> Sum<&'a Self>
+{
+    /// The largest difference of a channel among samples.
+    fn spread(samples: [Self; 4]) -> f64;
+}
+
+impl Sample for Vec3 {
+    fn spread(samples: [Self; 4]) -> f64 {
+        let least = samples.into_iter().fold(Self::INFINITY, Self::min);
+        let most = samples.into_iter().fold(Self::NEG_INFINITY, Self::max);
+        (most - least).max_element()
+    }
+}
+
+impl Sample for Vec4 {
+    fn spread(samples: [Self; 4]) -> f64 {
+        let least = samples.into_iter().fold(Self::INFINITY, Self::min);
+        let most = samples.into_iter().fold(Self::NEG_INFINITY, Self::max);
+        (most - least).max_element()
+    }
+}
 
 /// A place in the picture in units of a pixel's finest division, from the lower left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -70,19 +106,21 @@ pub fn grid_places(pixels: &[(u32, u32)], n: u32) -> Vec<(f64, f64)> {
 }
 
 /// The mean of each pixel's n × n colours.
-pub fn grid_means(colors: Vec<Vec3>, n: u32) -> Vec<Vec3> {
+pub fn grid_means<T: Sample>(colors: Vec<T>, n: u32) -> Vec<T> {
     if n == 1 {
         return colors;
     }
     let count = (n * n) as usize;
-    colors.chunks_exact(count).map(|samples| samples.iter().sum::<Vec3>() / count as f64).collect()
+    colors.chunks_exact(count).map(|samples| samples.iter().sum::<T>() / count as f64).collect()
 }
 
 /// A square of the lattice whose corners are known.
-#[derive(Clone, Copy)]
-struct Quad {
-    lower_left: LatticePoint,
-    edge: u64,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quad {
+    /// Its corner.
+    pub lower_left: LatticePoint,
+    /// Its edge in units of the lattice.
+    pub edge: u64,
 }
 
 impl Quad {
@@ -91,7 +129,7 @@ impl Quad {
     }
 
     /// Lower left, lower right, upper left, upper right.
-    fn corners(&self) -> [LatticePoint; 4] {
+    pub fn corners(&self) -> [LatticePoint; 4] {
         let e = self.edge;
         [self.point(0, 0), self.point(e, 0), self.point(0, e), self.point(e, e)]
     }
@@ -113,65 +151,106 @@ impl Quad {
 ///
 /// `trace` gives the colours of places it has not been asked for before in this call. Squares are divided level by
 /// level, so that a level's places are traced together.
-pub fn adaptive(
+pub fn adaptive<T: Sample>(
     block: Block,
     threshold: f64,
     depth: u32,
-    mut trace: impl FnMut(&[LatticePoint]) -> Vec<Vec3>,
-) -> Vec<Vec3> {
-    let edge = 1u64 << depth;
-    let pixel = |(i, j): (u32, u32)| Quad {
-        lower_left: LatticePoint { x: u64::from(i) * edge, y: u64::from(j) * edge },
-        edge,
-    };
-    let mut known = HashMap::new();
-    let pixels: Vec<Quad> = block.pixels().into_iter().map(pixel).collect();
-    learn(pixels.iter().flat_map(Quad::corners), &mut known, &mut trace);
-    // levels[k] holds the squares of level k and, for those divided, where their quadrants begin in level k + 1.
-    let mut levels: Vec<Vec<(Quad, Option<usize>)>> = Vec::new();
-    let mut current = pixels;
-    for level in 0..=depth {
-        let mut next: Vec<Quad> = Vec::new();
-        let mut squares = Vec::with_capacity(current.len());
-        for quad in &current {
-            let divide = level < depth && differ(quad.corners().map(|p| known[&p]), threshold);
-            squares.push((*quad, divide.then_some(next.len())));
-            if divide {
-                next.extend(quad.quadrants());
-            }
-        }
-        let divided = squares.iter().filter(|(_, quadrants)| quadrants.is_some());
-        learn(divided.flat_map(|(quad, _)| quad.middles()), &mut known, &mut trace);
-        levels.push(squares);
-        current = next;
-    }
-    let mut below: Vec<Vec3> = Vec::new();
-    for squares in levels.iter().rev() {
-        let mean = |(quad, quadrants): &(Quad, Option<usize>)| match quadrants {
-            Some(first) => quarter_sum([below[*first], below[first + 1], below[first + 2], below[first + 3]]),
-            None => quarter_sum(quad.corners().map(|p| known[&p])),
-        };
-        let means = squares.iter().map(mean).collect();
-        below = means;
-    }
-    below
+    trace: impl FnMut(&[LatticePoint]) -> Vec<T>,
+) -> Vec<T> {
+    Division::new(block, threshold, depth, trace).means()
 }
 
-fn quarter_sum([a, b, c, d]: [Vec3; 4]) -> Vec3 {
+/// The squares of a level and, for those divided, where their quadrants begin in the next level.
+type DividedSquares = Vec<(Quad, Option<usize>)>;
+
+/// A block's pixels, divided where their corners differ.
+pub struct Division<T> {
+    levels: Vec<DividedSquares>,
+    known: HashMap<LatticePoint, T>,
+}
+
+impl<T: Sample> Division<T> {
+    /// Divides; arguments as for [`adaptive`].
+    pub fn new(
+        block: Block,
+        threshold: f64,
+        depth: u32,
+        mut trace: impl FnMut(&[LatticePoint]) -> Vec<T>,
+    ) -> Self {
+        let edge = 1u64 << depth;
+        let pixel = |(i, j): (u32, u32)| Quad {
+            lower_left: LatticePoint { x: u64::from(i) * edge, y: u64::from(j) * edge },
+            edge,
+        };
+        let mut known = HashMap::new();
+        let pixels: Vec<Quad> = block.pixels().into_iter().map(pixel).collect();
+        learn(pixels.iter().flat_map(Quad::corners), &mut known, &mut trace);
+        let mut levels: Vec<DividedSquares> = Vec::new();
+        let mut current = pixels;
+        for level in 0..=depth {
+            let mut next: Vec<Quad> = Vec::new();
+            let mut squares = Vec::with_capacity(current.len());
+            for quad in &current {
+                let divide = level < depth && differ(quad.corners().map(|p| known[&p]), threshold);
+                squares.push((*quad, divide.then_some(next.len())));
+                if divide {
+                    next.extend(quad.quadrants());
+                }
+            }
+            let divided = squares.iter().filter(|(_, quadrants)| quadrants.is_some());
+            learn(divided.flat_map(|(quad, _)| quad.middles()), &mut known, &mut trace);
+            levels.push(squares);
+            current = next;
+        }
+        Self { levels, known }
+    }
+
+    /// The colours of the pixels, in the order of [`Block::pixels`].
+    pub fn means(&self) -> Vec<T> {
+        let mut below: Vec<T> = Vec::new();
+        for squares in self.levels.iter().rev() {
+            let mean = |(quad, quadrants): &(Quad, Option<usize>)| match quadrants {
+                Some(first) => {
+                    quarter_sum([below[*first], below[first + 1], below[first + 2], below[first + 3]])
+                }
+                None => quarter_sum(quad.corners().map(|p| self.known[&p])),
+            };
+            let means = squares.iter().map(mean).collect();
+            below = means;
+        }
+        below
+    }
+
+    /// The squares that were not divided further, coarse ones first, each with its level: it weighs 4^-level of its
+    /// pixel, and each of its corners a quarter of that.
+    pub fn squares(&self) -> Vec<(u32, Quad)> {
+        let levels = (0..).zip(&self.levels);
+        let whole = |(level, squares): (u32, &DividedSquares)| {
+            let whole = squares.iter().filter(|(_, quadrants)| quadrants.is_none());
+            whole.map(move |(quad, _)| (level, *quad)).collect::<Vec<_>>()
+        };
+        levels.flat_map(whole).collect()
+    }
+
+    /// The colour of every place that was traced.
+    pub fn color(&self, point: LatticePoint) -> Option<T> {
+        self.known.get(&point).copied()
+    }
+}
+
+fn quarter_sum<T: Sample>([a, b, c, d]: [T; 4]) -> T {
     (a + b + c + d) * 0.25
 }
 
 /// Whether the largest channel difference exceeds the threshold.
-fn differ(corners: [Vec3; 4], threshold: f64) -> bool {
-    let least = corners.iter().copied().fold(Vec3::INFINITY, Vec3::min);
-    let most = corners.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-    (most - least).max_element() > threshold
+fn differ<T: Sample>(corners: [T; 4], threshold: f64) -> bool {
+    T::spread(corners) > threshold
 }
 
-fn learn(
+fn learn<T: Sample>(
     wanted: impl Iterator<Item = LatticePoint>,
-    known: &mut HashMap<LatticePoint, Vec3>,
-    trace: &mut impl FnMut(&[LatticePoint]) -> Vec<Vec3>,
+    known: &mut HashMap<LatticePoint, T>,
+    trace: &mut impl FnMut(&[LatticePoint]) -> Vec<T>,
 ) {
     let mut unknown: Vec<LatticePoint> = wanted.filter(|point| !known.contains_key(point)).collect();
     unknown.sort_unstable_by_key(|point| (point.y, point.x));

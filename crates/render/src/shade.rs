@@ -14,6 +14,7 @@ use crate::solid;
 use crate::world::World;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
+use dotray_scene::model::Tint;
 use dotray_scene::resolved::ResolvedMaterial;
 
 /// A point hit, with all that the terms of the formula share.
@@ -33,6 +34,8 @@ pub struct ShadePoint<'a> {
     pub entering: bool,
     /// T_C
     pub texture: Vec3,
+    /// T_C for highlights and emission, where the dialect's textures colour them: else 1.
+    pub texture_on_all: Vec3,
     /// r̂: the mirrored direction.
     pub mirrored: Vec3,
 }
@@ -67,23 +70,30 @@ impl<'a> ShadePoint<'a> {
             geometric_normal: facing(surface.geometric_normal),
             entering,
             texture,
+            texture_on_all: if material.texture_on_all_light { texture } else { Vec3::ONE },
             mirrored: direction - normal * (2.0 * direction.dot(normal)),
         }
     }
 
     /// M_E + M_A·L_G·T_C
     pub fn own_light(&self, global_ambient: Vec3) -> Vec3 {
-        self.material.emissive + self.material.ambient * global_ambient * self.texture
+        self.material.emissive * self.texture_on_all + self.ambient(global_ambient)
+    }
+
+    /// M_A·L·T_C
+    pub fn ambient(&self, light: Vec3) -> Vec3 {
+        self.material.ambient * light * self.texture
     }
 
     /// L_i·[ M_D·T_C·max(0, n̂·L̂) + M_S·max(0, r̂·L̂)^(128·kSpec) ]·F_SPOT·F_ATTEN where n̂·L̂ > 0, else 0:
     /// what the light would give if nothing lay between.
-    pub fn lit(&self, incident: &Incident) -> Vec3 {
+    pub fn lit(&self, incident: &Incident, tint: &Tint) -> Vec3 {
         let cosine = self.normal.dot(incident.towards);
         if cosine <= 0.0 {
             return Vec3::ZERO;
         }
-        (self.diffuse(cosine) + self.highlight(incident.towards)) * incident.strength
+        let diffuse = self.diffuse(cosine) * tint.diffuse;
+        (diffuse + self.highlight(incident.towards) * tint.specular) * incident.strength
     }
 
     /// M_D·T_C·(n̂·L̂)
@@ -98,6 +108,7 @@ impl<'a> ShadePoint<'a> {
             return Vec3::ZERO;
         }
         // What the power would give: by far the most points lie outside of the highlight.
+        let specular = specular * self.texture_on_all;
         let (cosine, shininess) = (self.mirrored.dot(towards_light), self.material.shininess);
         if shininess == 0.0 {
             return specular;

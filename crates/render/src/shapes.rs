@@ -127,9 +127,11 @@ impl Shapes {
             Form::Cuboid => self.baked.cuboids[index].crossings(ray),
             Form::Cylinder => self.baked.cylinders[index].crossings(ray),
             Form::Cone => self.baked.cones[index].crossings(ray),
-            form @ (Form::FramedSphere | Form::FramedCuboid | Form::FramedCylinder | Form::FramedCone) => {
-                self.framed_crossings(form, index, position, ray)
-            }
+            form @ (Form::FramedSphere
+            | Form::FramedCuboid
+            | Form::FramedCylinder
+            | Form::FramedCone
+            | Form::FramedOther) => self.framed_crossings(form, index, position, ray),
         }
     }
 
@@ -141,6 +143,7 @@ impl Shapes {
             Form::FramedCuboid => self.baked.framed_cuboids[index].crossings(&ray_in_object),
             Form::FramedCylinder => self.baked.framed_cylinders[index].crossings(&ray_in_object),
             Form::FramedCone => self.baked.framed_cones[index].crossings(&ray_in_object),
+            Form::FramedOther => self.baked.framed_others[index].crossings(&ray_in_object),
             Form::Sphere | Form::Cuboid | Form::Cylinder | Form::Cone | Form::Triangle => Crossings::NONE,
         }
     }
@@ -182,7 +185,8 @@ impl Shapes {
             | Form::FramedSphere
             | Form::FramedCuboid
             | Form::FramedCylinder
-            | Form::FramedCone => {
+            | Form::FramedCone
+            | Form::FramedOther => {
                 let entry = (run.first + (self.number(position) - run.first_shape)) as usize;
                 let shape = self.lists.files[run.file.0 as usize].shape(run.kind, entry);
                 shape.expect("a resolved run names shapes only")
@@ -225,6 +229,8 @@ impl Shapes {
                     + bytes(&file.cones.shapes)
                     + bytes(&file.triangles.shapes)
                     + bytes(&file.indexed_triangles.shapes)
+                    + bytes(&file.tori.shapes)
+                    + bytes(&file.open_sides.shapes)
                     + bytes(&file.vertices)
             })
             .sum();

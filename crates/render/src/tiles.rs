@@ -8,12 +8,14 @@ use crate::options::Options;
 use crate::sampler;
 use crate::sampler::Block;
 use crate::sampler::LatticePoint;
+use crate::sampler::Sample;
 use crate::stats::MemoryPart;
 use crate::stats::Stats;
 use crate::trace::Tracer;
 use crate::world::World;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
+use dotray_geometry::Vec4;
 use dotray_image::Channels;
 use dotray_image::Image;
 use rayon::prelude::*;
@@ -77,19 +79,40 @@ pub fn render(world: &World, options: &Options, observer: &dyn Observer) -> Resu
     options.validate()?;
     let start = Instant::now();
     let window = options.window();
-    let image =
-        Image::new(window.width as usize, window.height as usize, Channels::Rgb).map_err(|error| {
-            RenderError::Film { width: window.width, height: window.height, reason: error.to_string() }
-        })?;
+    let channels = if options.transparent { Channels::Rgba } else { Channels::Rgb };
+    let image = Image::new(window.width as usize, window.height as usize, channels).map_err(|error| {
+        RenderError::Film { width: window.width, height: window.height, reason: error.to_string() }
+    })?;
     let film_bytes = size_of_val(image.samples()) as u64;
-    let film = Mutex::new(Film { image, stats: Stats::default(), finished_pixels: 0 });
-    let job = Job {
+    let film = Film { image, stats: Stats::default(), finished_pixels: 0 };
+    let (film, complete) = if options.transparent {
+        develop::<Vec4>(world, options, film, observer)?
+    } else {
+        develop::<Vec3>(world, options, film, observer)?
+    };
+    let Film { image, mut stats, .. } = film;
+    stats.memory = world.memory();
+    stats.memory.push(MemoryPart { name: "film", bytes: film_bytes });
+    stats.seconds = world.seconds().to_vec();
+    stats.seconds.push(("trace", start.elapsed().as_secs_f64()));
+    Ok(Rendering { image, stats, complete })
+}
+
+/// Fills the film with samples of one kind; also says whether every tile was computed.
+fn develop<T: Traced>(
+    world: &World,
+    options: &Options,
+    film: Film,
+    observer: &dyn Observer,
+) -> Result<(Film, bool), RenderError> {
+    let window = options.window();
+    let job = Job::<T> {
         world,
         options,
         camera: Camera::new(&world.camera, options.width, options.height),
         window,
-        borders: Borders::default(),
-        film,
+        borders: Borders { known: Mutex::default(), published: Condvar::new() },
+        film: Mutex::new(film),
         observer,
     };
     let tiles = tiles(options, window);
@@ -102,12 +125,46 @@ pub fn render(world: &World, options: &Options, observer: &dyn Observer) -> Resu
             .map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?
             .install(run),
     };
-    let Film { image, mut stats, .. } = job.film.into_inner().unwrap_or_else(PoisonError::into_inner);
-    stats.memory = world.memory();
-    stats.memory.push(MemoryPart { name: "film", bytes: film_bytes });
-    stats.seconds = world.seconds().to_vec();
-    stats.seconds.push(("trace", start.elapsed().as_secs_f64()));
-    Ok(Rendering { image, stats, complete })
+    Ok((job.film.into_inner().unwrap_or_else(PoisonError::into_inner), complete))
+}
+
+/// A sample that the tracer gives and the film takes.
+trait Traced: Sample {
+    /// Samples of these rays.
+    fn trace(tracer: &mut Tracer<'_>, rays: &[Ray]) -> Vec<Self>;
+
+    /// Stores it as a pixel of the film.
+    fn store(self, pixel: &mut [f32]);
+
+    /// The film's channels.
+    const CHANNELS: usize;
+}
+
+impl Traced for Vec3 {
+    const CHANNELS: usize = 3;
+
+    fn trace(tracer: &mut Tracer<'_>, rays: &[Ray]) -> Vec<Self> {
+        tracer.colors(rays)
+    }
+
+    fn store(self, pixel: &mut [f32]) {
+        pixel.copy_from_slice(&self.to_array().map(|x| x as f32));
+    }
+}
+
+impl Traced for Vec4 {
+    const CHANNELS: usize = 4;
+
+    fn trace(tracer: &mut Tracer<'_>, rays: &[Ray]) -> Vec<Self> {
+        tracer.covered_colors(rays)
+    }
+
+    /// Pictures in memory are not multiplied by alpha.
+    fn store(self, pixel: &mut [f32]) {
+        let alpha = self.w;
+        let color = if alpha > 0.0 { self.truncate() / alpha } else { Vec3::ZERO };
+        pixel.copy_from_slice(&color.extend(alpha).to_array().map(|x| x as f32));
+    }
 }
 
 /// The window in tiles along a Morton curve, so that tiles computed one after another look at the same part of the
@@ -139,17 +196,17 @@ fn spread(number: u32) -> u64 {
 /// The samples of a grid that are held at once.
 const GRID_SAMPLES: usize = 1 << 12;
 
-struct Job<'a> {
+struct Job<'a, T> {
     world: &'a World,
     options: &'a Options,
     camera: Camera,
     window: Crop,
-    borders: Borders,
+    borders: Borders<T>,
     film: Mutex<Film>,
     observer: &'a dyn Observer,
 }
 
-impl Job<'_> {
+impl<T: Traced> Job<'_, T> {
     /// Computes a tile and stores it; false where the work was cancelled before.
     fn tile(&self, block: Block) -> bool {
         if self.observer.cancelled() {
@@ -165,19 +222,19 @@ impl Job<'_> {
         true
     }
 
-    fn grid(&self, block: Block, n: u32, tracer: &mut Tracer<'_>) -> Vec<Vec3> {
+    fn grid(&self, block: Block, n: u32, tracer: &mut Tracer<'_>) -> Vec<T> {
         // Some pixels at a time, lest the samples of a fine grid fill memory.
         let at_once = (GRID_SAMPLES / (n * n) as usize).max(1);
         let mut colors = Vec::new();
         for pixels in block.pixels().chunks(at_once) {
             let places = sampler::grid_places(pixels, n);
             let rays: Vec<Ray> = places.iter().map(|&(x, y)| self.camera.ray(x, y)).collect();
-            colors.append(&mut sampler::grid_means(tracer.colors(&rays), n));
+            colors.append(&mut sampler::grid_means(T::trace(tracer, &rays), n));
         }
         colors
     }
 
-    fn adaptive(&self, block: Block, threshold: f64, depth: u32, tracer: &mut Tracer<'_>) -> Vec<Vec3> {
+    fn adaptive(&self, block: Block, threshold: f64, depth: u32, tracer: &mut Tracer<'_>) -> Vec<T> {
         let edge = 1u64 << depth;
         let scale = 1.0 / edge as f64;
         let (left, right) = (u64::from(block.x) * edge, u64::from(block.x + block.width) * edge);
@@ -186,19 +243,20 @@ impl Job<'_> {
         let mut trace = |points: &[LatticePoint]| {
             let rays: Vec<Ray> =
                 points.iter().map(|p| self.camera.ray(p.x as f64 * scale, p.y as f64 * scale)).collect();
-            tracer.colors(&rays)
+            T::trace(tracer, &rays)
         };
         sampler::adaptive(block, threshold, depth, |points| self.borders.share(points, on_border, &mut trace))
     }
 
-    fn store(&self, block: Block, colors: &[Vec3], stats: &Stats) {
+    fn store(&self, block: Block, colors: &[T], stats: &Stats) {
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
         let width = self.window.width as usize;
-        let pixels = film.image.samples_mut().as_chunks_mut::<3>().0;
+        let samples = film.image.samples_mut();
         for ((i, j), color) in block.pixels().into_iter().zip(colors) {
             let x = (i - self.window.x) as usize;
             let y = (self.options.height - 1 - j - self.window.y) as usize;
-            pixels[y * width + x] = [color.x as f32, color.y as f32, color.z as f32];
+            let start = (y * width + x) * T::CHANNELS;
+            color.store(&mut samples[start..start + T::CHANNELS]);
         }
         film.stats.add_counts(stats);
         film.finished_pixels += u64::from(block.width) * u64::from(block.height);
@@ -213,19 +271,18 @@ impl Job<'_> {
 
 /// Samples on the borders of tiles, so that two tiles that share one trace it once. `None` is a claim: some tile
 /// is about to publish the colour.
-#[derive(Default)]
-struct Borders {
-    known: Mutex<HashMap<LatticePoint, Option<Vec3>>>,
+struct Borders<T> {
+    known: Mutex<HashMap<LatticePoint, Option<T>>>,
     published: Condvar,
 }
 
 /// A tile's claims; given up should the tile fail before it publishes, so that nobody waits for ever.
-struct Claims<'a> {
-    borders: &'a Borders,
+struct Claims<'a, T: Sample> {
+    borders: &'a Borders<T>,
     points: Vec<LatticePoint>,
 }
 
-impl Drop for Claims<'_> {
+impl<T: Sample> Drop for Claims<'_, T> {
     fn drop(&mut self) {
         let mut known = self.borders.known.lock().unwrap_or_else(PoisonError::into_inner);
         for point in &self.points {
@@ -237,23 +294,23 @@ impl Drop for Claims<'_> {
     }
 }
 
-impl Borders {
+impl<T: Sample> Borders<T> {
     /// The colours of `points`: those that nobody has claimed are traced and published, the others are waited for.
     /// A tile publishes what it has claimed before it waits, so two tiles never wait for each other.
     fn share(
         &self,
         points: &[LatticePoint],
         on_border: impl Fn(&LatticePoint) -> bool,
-        trace: &mut impl FnMut(&[LatticePoint]) -> Vec<Vec3>,
-    ) -> Vec<Vec3> {
-        let mut colors: Vec<Option<Vec3>> = vec![None; points.len()];
+        trace: &mut impl FnMut(&[LatticePoint]) -> Vec<T>,
+    ) -> Vec<T> {
+        let mut colors: Vec<Option<T>> = vec![None; points.len()];
         let (mine, claims) = self.claim(points, on_border);
         let wanted: Vec<LatticePoint> = mine.iter().map(|&index| points[index]).collect();
         for (&index, color) in mine.iter().zip(trace(&wanted)) {
             colors[index] = Some(color);
         }
         self.publish(claims, points.iter().zip(&colors));
-        let color = |(point, color): (&LatticePoint, Option<Vec3>)| {
+        let color = |(point, color): (&LatticePoint, Option<T>)| {
             color.or_else(|| self.wait_for(point)).unwrap_or_else(|| trace(&[*point])[0])
         };
         points.iter().zip(colors).map(color).collect()
@@ -264,7 +321,7 @@ impl Borders {
         &self,
         points: &[LatticePoint],
         on_border: impl Fn(&LatticePoint) -> bool,
-    ) -> (Vec<usize>, Claims<'_>) {
+    ) -> (Vec<usize>, Claims<'_, T>) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let mut claims = Claims { borders: self, points: Vec::new() };
         let mut mine = Vec::with_capacity(points.len());
@@ -283,9 +340,11 @@ impl Borders {
 
     fn publish<'p>(
         &self,
-        claims: Claims<'_>,
-        colors: impl Iterator<Item = (&'p LatticePoint, &'p Option<Vec3>)>,
-    ) {
+        claims: Claims<'_, T>,
+        colors: impl Iterator<Item = (&'p LatticePoint, &'p Option<T>)>,
+    ) where
+        T: 'p,
+    {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         for (point, color) in colors {
             if let Some(entry @ None) = known.get_mut(point) {
@@ -297,7 +356,7 @@ impl Borders {
     }
 
     /// The colour that another tile publishes; `None` where it gave up.
-    fn wait_for(&self, point: &LatticePoint) -> Option<Vec3> {
+    fn wait_for(&self, point: &LatticePoint) -> Option<T> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
             match known.get(point) {

@@ -30,6 +30,8 @@ use dotray_accel::Level;
 use dotray_accel::Queries;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
+use dotray_geometry::Vec4;
+use dotray_scene::model::Tint;
 
 /// The rays of one stream: enough to keep SIMD lanes and caches busy, few enough that a deep recursion, which holds
 /// one stream a level, stays small.
@@ -84,6 +86,7 @@ struct ShadowStream {
 #[derive(Clone, Copy)]
 struct LightSample<'a> {
     light: &'a Light,
+    tint: &'a Tint,
     /// The light's number.
     number: u32,
     sample: u32,
@@ -123,17 +126,35 @@ impl<'a> Tracer<'a> {
 
     /// The colours that the eye rays see.
     pub fn colors(&mut self, eye_rays: &[Ray]) -> Vec<Vec3> {
-        self.stats.eye_rays += eye_rays.len() as u64;
         let mut colors = Vec::with_capacity(eye_rays.len());
+        self.eye_streams(eye_rays, |stream| colors.extend_from_slice(&stream.colors));
+        colors
+    }
+
+    /// The same with alpha 1; 0 in all four channels where an eye ray meets nothing.
+    pub fn covered_colors(&mut self, eye_rays: &[Ray]) -> Vec<Vec4> {
+        let mut colors = Vec::with_capacity(eye_rays.len());
+        self.eye_streams(eye_rays, |stream| {
+            let first = colors.len();
+            colors.resize(first + stream.rays.len(), Vec4::ZERO);
+            for Met { index, .. } in &stream.met {
+                colors[first + index] = stream.colors[*index].extend(1.0);
+            }
+        });
+        colors
+    }
+
+    /// Traces the eye rays stream by stream and shows each.
+    fn eye_streams(&mut self, eye_rays: &[Ray], mut show: impl FnMut(&Stream<'a>)) {
+        self.stats.eye_rays += eye_rays.len() as u64;
         for rays in eye_rays.chunks(STREAM) {
             let mut stream = self.take_stream();
             stream.rays.extend_from_slice(rays);
             stream.contributions.resize(rays.len(), Vec3::ONE);
             self.trace(&mut stream, 0);
-            colors.extend_from_slice(&stream.colors);
+            show(&stream);
             self.streams.push(stream);
         }
-        colors
     }
 
     /// All that the renderer computes for one eye ray, its colour included.
@@ -160,10 +181,12 @@ impl<'a> Tracer<'a> {
 
     /// Finds the colours of a stream whose rays have `depth` bounces behind them.
     fn trace(&mut self, stream: &mut Stream<'a>, depth: u32) {
-        stream.colors.resize(stream.rays.len(), self.world.background);
+        let world = self.world;
+        let background = if depth == 0 { world.background } else { world.secondary_background };
+        stream.colors.resize(stream.rays.len(), background);
         self.meet(stream, depth == 0);
         for Met { index, point } in &stream.met {
-            stream.colors[*index] = point.own_light(self.world.ambient);
+            stream.colors[*index] = point.own_light(world.ambient) + ambient_of_lights(world, point);
             if let Some(inspector) = &mut self.inspector {
                 inspector.own_light(stream.colors[*index]);
             }
@@ -207,9 +230,9 @@ impl<'a> Tracer<'a> {
 
     /// Adds every light's term to every point, light after light.
     fn add_lights(&mut self, met: &[Met<'_>], colors: &mut [Vec3]) {
-        for (number, light) in (0..).zip(&self.world.lights) {
+        for (number, (light, tint)) in (0..).zip(self.world.lights.iter().zip(&self.world.tints)) {
             let samples = light.samples(self.options.light_samples);
-            let first = LightSample { light, number, sample: 0, samples };
+            let first = LightSample { light, tint, number, sample: 0, samples };
             if samples == 1 {
                 self.add_light_sample(met, first, colors);
                 continue;
@@ -236,7 +259,7 @@ impl<'a> Tracer<'a> {
                 inspector.light(light_term(point, from, incident.as_ref()));
             }
             let Some(incident) = incident else { continue };
-            let lit = point.lit(&incident);
+            let lit = point.lit(&incident, from.tint);
             // Where the lamp adds nothing, nobody asks what lies between.
             if lit != Vec3::ZERO {
                 shadows.rays.push(Ray::new(point.point, incident.towards));
@@ -262,7 +285,7 @@ impl<'a> Tracer<'a> {
             Shadows::Filtered => false,
         };
         self.stats.shadow_rays += rays.len() as u64;
-        let transmission = |material: u32| world.materials[material as usize].transmission;
+        let transmission = |material: u32| world.materials[material as usize].shadow;
         let see_through = |material| !all_opaque && transmission(material) != Vec3::ZERO;
         let t_min = [world.ray_eps];
         let queries = Queries { rays, t_min: &t_min, t_max: ends };
@@ -369,11 +392,18 @@ fn light_term(point: &ShadePoint<'_>, from: LightSample<'_>, incident: Option<&I
         cosine,
         diffuse: point.diffuse(cosine.max(0.0)),
         highlight: incident.map_or(Vec3::ZERO, |incident| point.highlight(incident.towards)),
-        lit: incident.map_or(Vec3::ZERO, |incident| point.lit(incident)),
+        lit: incident.map_or(Vec3::ZERO, |incident| point.lit(incident, from.tint)),
         shadow: Shadow::NotAsked,
         filter: Vec3::ONE,
         tests: Tests::default(),
     }
+}
+
+/// What the lights' own ambient colours add, whatever stands between; only one dialect has such lights.
+fn ambient_of_lights(world: &World, point: &ShadePoint<'_>) -> Vec3 {
+    let tinted = world.lights.iter().zip(&world.tints).filter(|(_, tint)| tint.ambient != Vec3::ZERO);
+    let incidents = tinted.filter_map(|(light, tint)| Some((light.incident(point.point, 0, 1)?, tint)));
+    incidents.fold(Vec3::ZERO, |sum, (incident, tint)| sum + point.ambient(tint.ambient * incident.strength))
 }
 
 fn count(stats: &mut Stats, tests: &[Tests]) {

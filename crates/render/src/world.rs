@@ -13,6 +13,7 @@ use dotray_scene::Files;
 use dotray_scene::Resolved;
 use dotray_scene::Severity;
 use dotray_scene::model;
+use dotray_scene::model::Tint;
 use dotray_scene::resolved::ResolvedMaterial;
 use dotray_scene::resolved::ResolvedTexture;
 use std::time::Instant;
@@ -22,8 +23,10 @@ use std::time::Instant;
 pub struct World {
     pub(crate) camera: model::Camera,
     pub(crate) background: Vec3,
+    pub(crate) secondary_background: Vec3,
     pub(crate) ambient: Vec3,
     pub(crate) lights: Vec<Light>,
+    pub(crate) tints: Vec<Tint>,
     pub(crate) materials: Vec<ResolvedMaterial>,
     pub(crate) textures: Vec<Texture>,
     pub(crate) caster: Caster,
@@ -93,6 +96,10 @@ impl World {
         let default_material = resolved.default_material();
         let materials = std::mem::take(&mut resolved.materials);
         let lights = resolved.lights.iter().map(Light::new).collect();
+        // Whoever adds a light to a resolved scene need not know of tints.
+        let mut tints = std::mem::take(&mut resolved.tints);
+        tints.resize(resolved.lights.len(), Tint::PLAIN);
+        let secondary_background = resolved.secondary_background;
         let (camera, background, ambient) = (resolved.camera, resolved.background, resolved.ambient);
         let caster = Caster::with_default(resolved, default_material, options);
         seconds.extend_from_slice(caster.seconds());
@@ -101,8 +108,10 @@ impl World {
         Ok(Self {
             camera,
             background,
+            secondary_background,
             ambient,
             lights,
+            tints,
             materials,
             textures,
             caster,
@@ -114,6 +123,11 @@ impl World {
     /// The camera, after defaults.
     pub fn camera(&self) -> &model::Camera {
         &self.camera
+    }
+
+    /// The lights, by number.
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
     }
 
     /// The shapes, for rays of one's own.

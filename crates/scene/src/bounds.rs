@@ -42,7 +42,9 @@ fn reach(shape: &Shape, frame: &Transform, center: Vec3) -> f64 {
             None => farthest_corner(shape.bounds(), distance),
         },
         Shape::Triangle(triangle) => triangle.vertices().iter().copied().map(distance).fold(0.0, f64::max),
-        Shape::Cuboid(_) | Shape::Cylinder(_) | Shape::Cone(_) => farthest_corner(shape.bounds(), distance),
+        Shape::Cuboid(_) | Shape::Cylinder(_) | Shape::Cone(_) | Shape::Torus(_) | Shape::Open(_) => {
+            farthest_corner(shape.bounds(), distance)
+        }
     }
 }
 

@@ -1,10 +1,16 @@
 //! The one table of directives from which parser, writer, help and format page are made.
 
+mod foreign;
 mod page;
 mod table;
 
+pub use foreign::find_in;
+pub use foreign::find_in_any_dialect;
+pub use foreign::words_of;
 pub use page::format_page;
 pub use table::DIRECTIVES;
+
+use crate::dialect::Dialect;
 
 /// A directive of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,6 +63,34 @@ pub enum Directive {
     RayFile,
     /// `#ray_file_instance`
     RayFileInstance,
+    /// `uva`: `#joint_begin`
+    JointBegin,
+    /// `uva`: `#joint_end`
+    JointEnd,
+    /// `uva`: `#key_file`
+    KeyFile,
+    /// `jhu`: `#static_affine`
+    StaticAffine,
+    /// `jhu`: `#shape_list_begin`
+    ListBegin,
+    /// `jhu`: `#shape_list_end`
+    ListEnd,
+    /// `jhu`: `#shape_triangles`
+    Triangles,
+    /// `jhu`: `#shape_torus`; `hmc`: `#torus`
+    ShapeTorus,
+    /// `hmc`: `#version`
+    Version,
+    /// `hmc`: `#rayfile_end`
+    RayfileEnd,
+    /// `hmc`: `#translate`
+    Translate,
+    /// `hmc`: `#rotate`
+    Rotate,
+    /// `hmc`: `#scale`
+    Scale,
+    /// `unisa`: `#shader`
+    Shader,
 }
 
 /// What kind of token an argument is.
@@ -128,6 +162,27 @@ impl Form {
     /// The name, kind and group of each argument.
     pub fn each(&self) -> impl Iterator<Item = (&'static str, &'static Arguments)> {
         self.arguments.iter().flat_map(|group| group.names.iter().map(move |name| (*name, group)))
+    }
+
+    /// The places of the first argument of each group that is written apart: three points are three groups, and
+    /// neighbours that mean something each by themselves, such as radius and height, are one.
+    pub fn group_starts(&self) -> Vec<usize> {
+        let mut starts = Vec::new();
+        let (mut place, mut single_before) = (0, false);
+        for group in self.arguments {
+            let count = group.names.len();
+            let step = match count {
+                9 => 3,
+                6 => 2,
+                other => other.max(1),
+            };
+            if !(count == 1 && single_before) {
+                starts.extend((place..place + count).step_by(step));
+            }
+            place += count;
+            single_before = count == 1;
+        }
+        starts
     }
 
     /// All names with blanks between, `!…!` around a text.
@@ -205,15 +260,20 @@ pub fn spec(directive: Directive) -> &'static Spec {
     &DIRECTIVES[directive as usize]
 }
 
-/// The directive whose name is nearest to an unknown word, if one is near.
+/// The directive of the slides whose name is nearest to an unknown word, if one is near.
 pub fn suggest(word: &[u8]) -> Option<&'static Spec> {
+    suggest_in(Dialect::Slides, word)
+}
+
+/// The directive of a dialect whose name is nearest to an unknown word, if one is near.
+pub fn suggest_in(dialect: Dialect, word: &[u8]) -> Option<&'static Spec> {
     const LONGEST: usize = 40;
     if word.len() > LONGEST {
         return None;
     }
     let lower = word.to_ascii_lowercase();
     let near = (lower.len() / 3).clamp(1, 4);
-    let distances = DIRECTIVES.iter().map(|spec| (edit_distance(&lower, spec.word.as_bytes()), spec));
+    let distances = words_of(dialect).map(|spec| (edit_distance(&lower, spec.word.as_bytes()), spec));
     let nearest = distances.min_by_key(|(distance, _)| *distance);
     // `#sphere` is far from `#shape_sphere` in letters, but not to a person.
     let stem = lower.strip_prefix(b"#").filter(|stem| stem.len() > 2);
@@ -221,7 +281,7 @@ pub fn suggest(word: &[u8]) -> Option<&'static Spec> {
         |spec: &&Spec| stem.is_some_and(|stem| spec.word.as_bytes().ends_with(&[b"_", stem].concat()));
     match nearest {
         Some((distance, spec)) if distance <= near => Some(spec),
-        Some(_) | None => DIRECTIVES.iter().find(whole),
+        Some(_) | None => words_of(dialect).find(whole),
     }
 }
 
@@ -278,6 +338,21 @@ mod tests {
             for form in entry.forms {
                 assert_eq!(form.count, form.each().count(), "{}", entry.word);
                 assert!(form.count <= MAX_ARGUMENTS);
+            }
+        }
+    }
+
+    #[test]
+    fn the_examples_stand_in_their_groups() {
+        for entry in &DIRECTIVES {
+            for form in entry.forms.iter().filter(|form| form.numeric && form.count > 0) {
+                let (_, arguments) = form.example.split_once(' ').unwrap();
+                let mut starts = vec![0];
+                for group in arguments.split("  ") {
+                    starts.push(starts.last().unwrap() + group.split(' ').count());
+                }
+                starts.pop();
+                assert_eq!(form.group_starts(), starts, "{}", form.example);
             }
         }
     }

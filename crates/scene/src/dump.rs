@@ -10,6 +10,7 @@ use crate::walk::Step;
 use crate::walk::Walk;
 use dotray_geometry::Affine;
 use dotray_geometry::Mat4;
+use dotray_geometry::OpenSide;
 use dotray_geometry::Shape;
 use dotray_geometry::Transform;
 use dotray_geometry::Triangle;
@@ -178,6 +179,12 @@ impl fmt::Display for Line<'_> {
                 write!(f, "CONE: C({}) R={radius} H={height}", point(cone.center()))
             }
             Shape::Triangle(triangle) => triangle_line(triangle, f),
+            Shape::Torus(torus) => {
+                let [tube, ring] = [torus.tube(), torus.ring()].map(General);
+                write!(f, "TORUS: C({}) R={ring} TUBE={tube}", point(torus.center()))
+            }
+            Shape::Open(OpenSide::Cylinder(side)) => write!(f, "OPEN {}", Line(&Shape::Cylinder(*side))),
+            Shape::Open(OpenSide::Cone(side)) => write!(f, "OPEN {}", Line(&Shape::Cone(*side))),
         }
     }
 }

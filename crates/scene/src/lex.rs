@@ -243,7 +243,7 @@ impl<'a> Lexer<'a> {
         let indentation = rest.iter().take(64).take_while(|&&byte| byte == b' ' || byte == b'\t').count();
         let lexer = Lexer::from(self.bytes, line + indentation);
         let word = self.bytes.get(lexer.at..lexer.word_end_within(32)).unwrap_or_default();
-        word.first() == Some(&b'#') && directive::find_in_any_case(word).is_some()
+        word.first() == Some(&b'#') && directive::find_in_any_dialect(word).is_some()
     }
 
     fn word_end_within(&self, limit: usize) -> usize {

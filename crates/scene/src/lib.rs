@@ -6,11 +6,15 @@ pub mod span;
 
 pub mod diagnostic;
 
+pub mod dialect;
+
 pub mod files;
 
 pub mod sources;
 
 pub mod directive;
+
+pub mod similar;
 
 pub mod number;
 
@@ -24,11 +28,15 @@ pub mod lex;
 
 pub mod lookalike;
 
+pub mod detect;
+
 mod parse;
 
 pub mod load;
 
 pub mod report;
+
+pub mod context;
 
 pub mod resolved;
 
@@ -40,13 +48,22 @@ pub mod bounds;
 
 pub mod resolve;
 
+pub mod lint;
+
+pub mod codes;
+
+pub mod format;
+
 pub mod write;
+
+pub mod convert;
 
 pub mod dump;
 
 pub mod summary;
 
 pub use diagnostic::{Diagnostic, Severity};
+pub use dialect::Dialect;
 pub use files::Files;
 pub use load::{LoadOptions, Loaded, load, load_text};
 pub use model::Scene;

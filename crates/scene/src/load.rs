@@ -2,15 +2,18 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used)]
 
+use crate::detect::Marks;
+use crate::detect::Verdict;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Severity;
 use crate::diagnostic::Sink;
-use crate::directive;
+use crate::dialect::Dialect;
 use crate::files::Files;
 use crate::model::Scene;
 use crate::model::SceneFile;
 use crate::parse;
 use crate::parse::NOT_LOADED;
+use crate::similar::similar_file;
 use crate::sources::Sources;
 use crate::span::FileId;
 use crate::span::Span;
@@ -29,6 +32,8 @@ pub struct LoadOptions {
     /// Where included files are looked for that do not stand beside the file that names them; `None` is the
     /// process's own working directory.
     pub working_directory: Option<PathBuf>,
+    /// The dialect; `None` finds out from the file and its includes.
+    pub dialect: Option<Dialect>,
 }
 
 /// What reading gives.
@@ -40,15 +45,52 @@ pub struct Loaded {
     pub diagnostics: Vec<Diagnostic>,
     /// The text that the diagnostics point into.
     pub sources: Sources,
+    /// The dialect that the files were read in.
+    pub dialect: Dialect,
+    /// What spoke for that dialect, where it was found out and is not the slides' own.
+    pub because: Option<String>,
 }
 
 /// Reads the file at `path` and all that it includes. Everything that is wrong, be it that the file cannot be read,
 /// is told in the diagnostics.
 pub fn load(path: &Path, files: &dyn Files, options: &LoadOptions) -> Loaded {
-    let mut loader = Loader::new(files, options);
     match files.read_at_most(path, options.limits.max_file_bytes) {
-        Ok(bytes) => loader.run(path.to_owned(), bytes),
-        Err(fault) => loader.cannot_read(path, &fault),
+        Ok(bytes) => load_bytes(path.to_owned(), bytes, files, options),
+        Err(fault) => {
+            let mut loader = Loader::new(files, options, options.dialect.unwrap_or_default());
+            loader.cannot_read(path, &fault);
+            loader.finish()
+        }
+    }
+}
+
+/// Reads as slides first, so that a slides file is never taken for another and costs no second look. Only a file that
+/// is faulty as such may be of another dialect.
+fn load_bytes(path: PathBuf, bytes: Vec<u8>, files: &dyn Files, options: &LoadOptions) -> Loaded {
+    let mut loader = Loader::new(files, options, options.dialect.unwrap_or_default());
+    loader.run(path.clone(), bytes);
+    if options.dialect.is_some() || loader.sink.errors() == 0 {
+        return loader.finish();
+    }
+    let Verdict { dialect, because, doubt } = loader.verdict();
+    if let Some(doubt) = doubt.as_ref().filter(|doubt| doubt.severity == Severity::Error) {
+        // Whatever else there is to say depends on the dialect.
+        loader.sink = Sink::new(options.limits.max_errors, options.limits.max_warnings_of_a_kind);
+        loader.sink.error(doubt.clone());
+        return loader.finish();
+    }
+    let because = because.map(|(span, what)| format!("{what} at {}", loader.sources.place(span)));
+    if dialect != Dialect::Slides {
+        let bytes = loader.sources.take_bytes(FileId(0));
+        loader = Loader::new(files, options, dialect);
+        loader.run(path, bytes);
+        loader.because = because;
+    }
+    // The doubt may point into files that this reading has not reached.
+    let known = u32::try_from(loader.sources.len()).unwrap_or(u32::MAX);
+    if let Some(mut doubt) = doubt {
+        doubt.notes.retain(|(span, _)| span.is_none_or(|span| span.file.0 < known));
+        loader.sink.warn(doubt.code, || doubt);
     }
     loader.finish()
 }
@@ -64,9 +106,7 @@ pub fn load(path: &Path, files: &dyn Files, options: &LoadOptions) -> Loaded {
 /// assert_eq!(scene.files[0].spheres.shapes.len(), 1);
 /// ```
 pub fn load_text(name: &str, text: impl Into<Vec<u8>>, files: &dyn Files, options: &LoadOptions) -> Loaded {
-    let mut loader = Loader::new(files, options);
-    loader.run(PathBuf::from(name), text.into());
-    loader.finish()
+    load_bytes(PathBuf::from(name), text.into(), files, options)
 }
 
 /// How a file came to be read.
@@ -79,6 +119,8 @@ struct Reached {
 struct Loader<'a> {
     files: &'a dyn Files,
     options: &'a LoadOptions,
+    dialect: Dialect,
+    because: Option<String>,
     sink: Sink,
     sources: Sources,
     scene: Scene,
@@ -88,11 +130,13 @@ struct Loader<'a> {
 }
 
 impl<'a> Loader<'a> {
-    fn new(files: &'a dyn Files, options: &'a LoadOptions) -> Self {
+    fn new(files: &'a dyn Files, options: &'a LoadOptions, dialect: Dialect) -> Self {
         let Limits { max_errors, max_warnings_of_a_kind, .. } = options.limits;
         Self {
             files,
             options,
+            dialect,
+            because: None,
             sink: Sink::new(max_errors, max_warnings_of_a_kind),
             sources: Sources::default(),
             scene: Scene::default(),
@@ -109,12 +153,49 @@ impl<'a> Loader<'a> {
             let file = FileId(next as u32);
             let path = self.sources.path(file).to_owned();
             let limits = &self.options.limits;
-            let parsed = parse::parse(path, self.sources.bytes(file), file, limits, &mut self.sink);
+            let parsed =
+                parse::parse(path, self.sources.bytes(file), file, self.dialect, limits, &mut self.sink);
             self.scene.files.push(parsed);
             self.find_includes(next);
             next += 1;
         }
         self.refuse_cycles();
+    }
+
+    /// Which dialect the file asked for is written in: by itself where it has any mark, else by what it includes.
+    fn verdict(&self) -> Verdict {
+        let mut marks = Marks::default();
+        let mut names: Vec<(PathBuf, String)> = Vec::new();
+        let main = self.sources.path(FileId(0)).to_owned();
+        let found = marks.scan(&main, self.sources.bytes(FileId(0)), FileId(0));
+        names.extend(found.into_iter().map(|name| (main.clone(), name)));
+        let mut seen: Vec<PathBuf> = vec![self.files.identity(&main)];
+        let mut next = 0;
+        while marks.is_empty() && next < names.len() && next < self.options.limits.max_includes {
+            let Some((from, name)) = names.get(next).cloned() else { break };
+            next += 1;
+            for path in self.candidates(&from, &name, true) {
+                let identity = self.files.identity(&path);
+                if seen.contains(&identity) {
+                    break;
+                }
+                let Ok(bytes) = self.files.read_at_most(&path, self.options.limits.max_file_bytes) else {
+                    continue;
+                };
+                seen.push(identity);
+                // A file that no reading has numbered yet has no place that a message could show.
+                let found = marks.scan(&path, &bytes, FileId(u32::MAX));
+                names.extend(found.into_iter().map(|name| (path.clone(), name)));
+                break;
+            }
+        }
+        let mut verdict = marks.verdict();
+        if let Some((span, _)) = &verdict.because
+            && span.file.0 == u32::MAX
+        {
+            verdict.because = verdict.because.map(|(_, what)| (Span::new(FileId(0), 0, 0), what));
+        }
+        verdict
     }
 
     fn take(&mut self, path: PathBuf, bytes: Vec<u8>, reached: Reached) -> FileId {
@@ -123,6 +204,27 @@ impl<'a> Loader<'a> {
         self.known.insert(identity, file);
         self.reached.push(reached);
         file
+    }
+
+    /// Where an included file may be: beside the file that names it, else in the working directory; for the sake of
+    /// courses whose programs ran in another folder than that of their scenes, else under its bare name beside the file
+    /// that names it, or in the folders above.
+    fn candidates(&self, from: &Path, name: &str, above: bool) -> Vec<PathBuf> {
+        const ABOVE: usize = 3;
+        // Through its components a path loses `./`.
+        let name = if above { name.replace('\\', "/") } else { name.to_owned() };
+        let within = |folder: &Path| folder.join(&name).components().collect::<PathBuf>();
+        let beside = within(from.parent().unwrap_or(Path::new("")));
+        let working = within(self.options.working_directory.as_deref().unwrap_or(Path::new("")));
+        let mut all = if beside == working { vec![beside] } else { vec![beside, working] };
+        if above {
+            let bare = Path::new(&name).file_name().unwrap_or_default();
+            all.push(from.parent().unwrap_or(Path::new("")).join(bare));
+            // The folders of the whole path, for a relative one may end too soon.
+            let whole = self.files.identity(from);
+            all.extend(whole.ancestors().skip(2).take(ABOVE).map(within));
+        }
+        all
     }
 
     fn find_includes(&mut self, of: usize) {
@@ -145,7 +247,8 @@ impl<'a> Loader<'a> {
 
     fn find_include(&mut self, name: &str, span: Span) -> Option<FileId> {
         let candidates =
-            candidates(self.sources.path(span.file), name, self.options.working_directory.as_deref());
+            self.candidates(self.sources.path(span.file), name, self.dialect.conventions().lenient);
+        let usual = self.candidates(self.sources.path(span.file), name, false).len();
         let depth = self.reached.get(span.file.0 as usize).map_or(0, |reached| reached.depth) + 1;
         let Limits { max_file_bytes, max_include_depth, max_includes, .. } = self.options.limits;
         let mut tried = Vec::new();
@@ -162,12 +265,25 @@ impl<'a> Loader<'a> {
                 return None;
             }
             match self.files.read_at_most(&path, max_file_bytes) {
-                Ok(bytes) => return Some(self.take(path, bytes, Reached { by: Some(span), depth })),
+                Ok(bytes) => {
+                    if tried.len() >= usual {
+                        self.found_elsewhere(name, &path, span);
+                    }
+                    return Some(self.take(path, bytes, Reached { by: Some(span), depth }));
+                }
                 Err(fault) => tried.push((path, fault)),
             }
         }
         self.sink.error(self.not_found(name, span, &tried));
         None
+    }
+
+    fn found_elsewhere(&mut self, name: &str, path: &Path, span: Span) {
+        self.sink.warn("include-elsewhere", || {
+            let message = format!("`{name}` was found as `{}`", path.display());
+            let warning = Diagnostic::warning("include-elsewhere", message).at(span);
+            warning.label("neither beside this file nor in the working directory")
+        });
     }
 
     fn not_found(&self, name: &str, span: Span, tried: &[(PathBuf, io::Error)]) -> Diagnostic {
@@ -187,7 +303,11 @@ impl<'a> Loader<'a> {
         let error = error.at(span).label("named here");
         let error =
             tried.iter().fold(error, |error, (path, _)| error.note(format!("tried `{}`", path.display())));
-        match tried.iter().filter(|(_, fault)| is_missing(fault)).find_map(|(path, _)| self.similar(path)) {
+        match tried
+            .iter()
+            .filter(|(_, fault)| is_missing(fault))
+            .find_map(|(path, _)| similar_file(self.files, path))
+        {
             Some(similar) => error.help(format!("there is a file `{similar}`")),
             None => error,
         }
@@ -198,26 +318,12 @@ impl<'a> Loader<'a> {
             return self.sink.error(too_large_error(path, &self.options.limits));
         }
         let error = Diagnostic::error("cannot-read", format!("cannot read `{}`: {fault}", path.display()));
-        self.sink.error(match self.similar(path).filter(|_| fault.kind() == io::ErrorKind::NotFound) {
-            Some(similar) => error.help(format!("there is a file `{similar}`")),
-            None => error,
-        });
-    }
-
-    /// A file in the same folder whose name is nearly that of `path`.
-    fn similar(&self, path: &Path) -> Option<String> {
-        const LONGEST: usize = 64;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let wanted = path.file_name()?.to_str()?.to_ascii_lowercase();
-        let near = (wanted.len() / 4).clamp(1, 4);
-        let names =
-            self.files.names_in(folder).into_iter().filter(|name| name.len().max(wanted.len()) <= LONGEST);
-        let distances = names.map(|name| {
-            let distance = directive::edit_distance(name.to_ascii_lowercase().as_bytes(), wanted.as_bytes());
-            (distance, name)
-        });
-        let (_, name) = distances.min().filter(|(distance, _)| *distance <= near)?;
-        Some(folder.join(name).display().to_string())
+        self.sink.error(
+            match similar_file(self.files, path).filter(|_| fault.kind() == io::ErrorKind::NotFound) {
+                Some(similar) => error.help(format!("there is a file `{similar}`")),
+                None => error,
+            },
+        );
     }
 
     /// Walks the files' includes depth first, without a stack of calls.
@@ -286,7 +392,8 @@ impl<'a> Loader<'a> {
         debug_assert_eq!(failed, diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error));
         debug_assert!(failed || self.scene.files.iter().all(is_complete));
         self.scene.files.iter_mut().for_each(shrink);
-        Loaded { scene: (!failed).then_some(self.scene), diagnostics, sources: self.sources }
+        let Self { dialect, because, sources, .. } = self;
+        Loaded { scene: (!failed).then_some(self.scene), diagnostics, sources, dialect, because }
     }
 }
 
@@ -316,13 +423,4 @@ fn shrink(file: &mut SceneFile) {
 fn too_large_error(path: &Path, limits: &Limits) -> Diagnostic {
     let message = format!("`{}` is larger than {} bytes", path.display(), limits.max_file_bytes);
     Diagnostic::error("file-too-large", message)
-}
-
-/// Where an included file may be: beside the file that names it, else in the working directory.
-fn candidates(from: &Path, name: &str, working_directory: Option<&Path>) -> Vec<PathBuf> {
-    // Through its components a path loses `./`.
-    let within = |folder: &Path| folder.join(name).components().collect::<PathBuf>();
-    let beside = within(from.parent().unwrap_or(Path::new("")));
-    let working = within(working_directory.unwrap_or(Path::new("")));
-    if beside == working { vec![beside] } else { vec![beside, working] }
 }

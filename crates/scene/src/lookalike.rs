@@ -27,6 +27,9 @@ pub fn lookalike(bytes: &[u8]) -> Option<Lookalike> {
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         return Some(Lookalike::Utf16);
     }
+    if let Some((_, name)) = BEGINNINGS.iter().find(|(begin, _)| bytes.starts_with(begin)) {
+        return Some(Lookalike::OtherFormat(name));
+    }
     if bytes.iter().take(ENOUGH).any(|&byte| byte == 0) {
         return Some(Lookalike::Binary);
     }
@@ -44,6 +47,21 @@ pub fn lookalike(bytes: &[u8]) -> Option<Lookalike> {
             let version = lexer.token().ok().flatten().map(|token| lexer.text(token)).unwrap_or_default();
             version.starts_with(b"HMC").then_some(Lookalike::OtherDialect("hmc"))
         }
+        (TokenKind::Word, b"ply") => Some(Lookalike::OtherFormat("a PLY mesh")),
+        (TokenKind::Word, b"solid") => Some(Lookalike::OtherFormat("an STL mesh")),
+        (TokenKind::Word, b"OFF") => Some(Lookalike::OtherFormat("an OFF mesh")),
+        (TokenKind::Word, b"mtllib") => Some(Lookalike::OtherFormat("a Wavefront OBJ mesh")),
+        (TokenKind::Word, b"v" | b"o" | b"g" | b"vn") if is_mesh(lexer.clone()) => {
+            Some(Lookalike::OtherFormat("a Wavefront OBJ mesh"))
+        }
+        (TokenKind::Word, b"LookAt" | b"WorldBegin" | b"Camera" | b"Film" | b"Sampler" | b"Integrator") => {
+            Some(Lookalike::OtherFormat("a pbrt scene"))
+        }
+        (TokenKind::Word, b"camera" | b"global_settings" | b"light_source") if is_braced(lexer.clone()) => {
+            Some(Lookalike::OtherFormat("a POV-Ray scene"))
+        }
+        (TokenKind::Directive, b"#VRML") => Some(Lookalike::OtherFormat("a VRML world")),
+        (TokenKind::Directive, b"##RenderMan") => Some(Lookalike::OtherFormat("a RenderMan file")),
         (TokenKind::Quoted, _) => {
             let next = lexer.token().ok().flatten()?;
             let is_number = lex::number(lexer.text(next)).is_ok();
@@ -51,6 +69,33 @@ pub fn lookalike(bytes: &[u8]) -> Option<Lookalike> {
         }
         (TokenKind::Directive | TokenKind::Word | TokenKind::Text, _) => None,
     }
+}
+
+/// Files that their first bytes name, whatever follows.
+const BEGINNINGS: &[(&[u8], &str)] = &[
+    (b"\x89PNG", "a PNG picture"),
+    (b"\xff\xd8\xff", "a JPEG picture"),
+    (b"GIF8", "a GIF picture"),
+    (b"qoif", "a QOI picture"),
+    (b"#?RADIANCE", "a Radiance HDR picture"),
+    (b"\x76\x2f\x31\x01", "an OpenEXR picture"),
+    (b"%PDF", "a PDF document"),
+    (b"%!PS", "a PostScript document"),
+    (b"PK\x03\x04", "a ZIP archive"),
+    (b"glTF", "a glTF mesh"),
+    (b"<", "an XML or HTML document"),
+    (b"{", "a JSON document"),
+];
+
+/// Whether a line of an OBJ mesh goes on: three numbers, or a name and a line of numbers.
+fn is_mesh(mut lexer: Lexer<'_>) -> bool {
+    let words = std::iter::from_fn(|| lexer.token().ok().flatten().map(|token| lexer.text(token)));
+    let numbers = words.take(5).filter(|word| lex::number(word).is_ok());
+    numbers.count() >= 3
+}
+
+fn is_braced(mut lexer: Lexer<'_>) -> bool {
+    lexer.token().ok().flatten().is_some_and(|token| lexer.text(token).starts_with(b"{"))
 }
 
 /// The dialect of which a directive is known that this one has not.
@@ -80,13 +125,22 @@ pub fn foreign_directive(word: &[u8]) -> Option<&'static str> {
     FOREIGN.iter().find(|(known, _)| known.as_bytes().eq_ignore_ascii_case(word)).map(|(_, dialect)| *dialect)
 }
 
+/// Whether the word is one of constructive solid geometry, as `jhu` has it.
+pub fn is_solid_geometry(word: &[u8]) -> bool {
+    let Some(stem) = word.strip_prefix(b"#") else { return false };
+    let stem = stem.to_ascii_lowercase();
+    let stem = stem.strip_prefix(b"shape_").unwrap_or(&stem);
+    let stem = stem.strip_suffix(b"_begin").or(stem.strip_suffix(b"_end")).unwrap_or(stem);
+    [&b"union"[..], b"intersection", b"difference", b"csg"].contains(&stem)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn other_formats_are_told_by_their_first_words() {
-        let cases: [(&[u8], Option<Lookalike>); 9] = [
+        let cases: [(&[u8], Option<Lookalike>); 17] = [
             (b" // nothing\n", Some(Lookalike::Empty)),
             (b"BM\x36\0\0\0", Some(Lookalike::Binary)),
             (b"\xff\xfe#\0c\0", Some(Lookalike::Utf16)),
@@ -96,6 +150,14 @@ mod tests {
             (b"\"A title\" 50.0", Some(Lookalike::OtherFormat("a file of ray acoustics"))),
             (b"#version HMCCS155FALL2002", Some(Lookalike::OtherDialect("hmc"))),
             (b"#camera 0 0 0", None),
+            (b"\x89PNG\r\n", Some(Lookalike::OtherFormat("a PNG picture"))),
+            (b"ply\nformat ascii 1.0", Some(Lookalike::OtherFormat("a PLY mesh"))),
+            (b"v 1 2 3\nv 4 5 6", Some(Lookalike::OtherFormat("a Wavefront OBJ mesh"))),
+            (b"o cube\nv 1 2 3", Some(Lookalike::OtherFormat("a Wavefront OBJ mesh"))),
+            (b"o my scene\n#camera", None),
+            (b"camera { location", Some(Lookalike::OtherFormat("a POV-Ray scene"))),
+            (b"camera 0 0 4", None),
+            (b"<scene version='3'>", Some(Lookalike::OtherFormat("an XML or HTML document"))),
         ];
         for (bytes, expected) in cases {
             assert_eq!(lookalike(bytes), expected, "{}", String::from_utf8_lossy(bytes));

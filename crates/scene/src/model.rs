@@ -1,5 +1,6 @@
 //! The scene as written: plain data, the slides' names, the order of the file.
 
+use crate::dialect::Dialect;
 use crate::span::FileId;
 use crate::span::PackedStarts;
 use crate::span::Span;
@@ -7,7 +8,9 @@ use dotray_geometry::Cone;
 use dotray_geometry::Cuboid;
 use dotray_geometry::Cylinder;
 use dotray_geometry::Mat4;
+use dotray_geometry::OpenSide;
 use dotray_geometry::Sphere;
+use dotray_geometry::Torus;
 use dotray_geometry::Triangle;
 use dotray_geometry::Vec2;
 use dotray_geometry::Vec3;
@@ -89,6 +92,34 @@ pub enum Light {
     },
 }
 
+/// What a light sends by kind of reflection, in a dialect that says so: channel by channel, as parts of the light's own
+/// colour, which is the largest of the three.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tint {
+    /// What M_A reflects, whatever the normal and the shadows.
+    pub ambient: Color,
+    /// What M_D reflects.
+    pub diffuse: Color,
+    /// What M_S reflects.
+    pub specular: Color,
+}
+
+impl Tint {
+    /// A light of one colour.
+    pub const PLAIN: Self = Self { ambient: Color::ZERO, diffuse: Color::ONE, specular: Color::ONE };
+}
+
+/// A material's weights where a dialect gives them by themselves instead of by ks and kt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    /// The highlight's exponent.
+    pub shininess: f64,
+    /// What a mirrored ray's colour is multiplied by.
+    pub reflection: Color,
+    /// What a refracted ray's colour is multiplied by.
+    pub transmission: Color,
+}
+
 /// `#material`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -110,6 +141,8 @@ pub struct Material {
     pub texture: Option<u32>,
     /// The text between the exclamation marks.
     pub text: String,
+    /// Weights in place of ks and kt.
+    pub weights: Option<Weights>,
 }
 
 /// `#vertex`.
@@ -138,6 +171,10 @@ pub enum ShapeKind {
     Triangle,
     /// `#shape_triangle` of three vertex numbers
     IndexedTriangle,
+    /// A torus, which only some dialects have.
+    Torus,
+    /// A cylinder or cone without discs, which only some dialects have.
+    Open,
 }
 
 /// The shapes of one kind of one file, in file order.
@@ -201,6 +238,8 @@ pub struct Include {
 pub struct SceneFile {
     /// The path it was read from.
     pub path: PathBuf,
+    /// What its words mean.
+    pub dialect: Dialect,
     /// The first `#camera`.
     pub camera: Option<Placed<Camera>>,
     /// The first `#background`.
@@ -209,6 +248,8 @@ pub struct SceneFile {
     pub ambient: Option<Placed<Color>>,
     /// The lights.
     pub lights: Vec<Placed<Light>>,
+    /// The lights' tints by their numbers; shorter than the list of lights where the last ones are plain.
+    pub tints: Vec<Tint>,
     /// The names of the textures.
     pub textures: Vec<Placed<String>>,
     /// The materials.
@@ -233,6 +274,10 @@ pub struct SceneFile {
     pub triangles: ShapeList<Triangle>,
     /// `#shape_triangle` with three vertex numbers, known to be in range
     pub indexed_triangles: ShapeList<[u32; 3]>,
+    /// `#shape_torus`, `#torus`
+    pub tori: ShapeList<Torus>,
+    /// `#cylinder` and `#cone` without `-c`
+    pub open_sides: ShapeList<OpenSide>,
 }
 
 /// A scene: the file asked for and all that it includes.

@@ -7,13 +7,19 @@
 
 mod arguments;
 mod camera;
+mod count;
 mod ending;
 mod group;
+mod hmc;
+mod jhu;
 mod material;
 mod shapes;
+mod uva;
 
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Sink;
+use crate::dialect::Conventions;
+use crate::dialect::Dialect;
 use crate::directive;
 use crate::directive::Directive;
 use crate::directive::MAX_ARGUMENTS;
@@ -23,9 +29,11 @@ use crate::lex::Token;
 use crate::lookalike;
 use crate::lookalike::Lookalike;
 use crate::model::Item;
+use crate::model::Placed;
 use crate::model::SceneFile;
 use crate::span::FileId;
 use crate::span::Span;
+use dotray_geometry::Mat4;
 use std::path::PathBuf;
 
 /// Bounds on what a file may make the reader do.
@@ -67,15 +75,17 @@ pub(crate) fn parse(
     path: PathBuf,
     bytes: &[u8],
     file: FileId,
+    dialect: Dialect,
     limits: &Limits,
     sink: &mut Sink,
 ) -> SceneFile {
-    if let Some(other) = lookalike::lookalike(bytes) {
-        sink.error(not_a_scene(&other, file));
-        return SceneFile { path, ..SceneFile::default() };
+    let own = Lookalike::OtherDialect(dialect.name());
+    if let Some(other) = lookalike::lookalike(bytes).filter(|other| *other != own) {
+        sink.error(not_a_scene(&other, dialect, file));
+        return SceneFile { path, dialect, ..SceneFile::default() };
     }
     let before = sink.mark();
-    let mut parser = Parser::new(path, bytes, file, limits, sink);
+    let mut parser = Parser::new(path, bytes, file, dialect, limits, sink);
     parser.run();
     if !parser.stopped {
         parser.finish();
@@ -90,7 +100,7 @@ pub(crate) fn parse(
     scene
 }
 
-fn not_a_scene(other: &Lookalike, file: FileId) -> Diagnostic {
+fn not_a_scene(other: &Lookalike, wanted: Dialect, file: FileId) -> Diagnostic {
     let span = Span::new(file, 0, 0);
     let error = |text: String| Diagnostic::error("not-a-scene", text).at(span);
     match other {
@@ -103,7 +113,7 @@ fn not_a_scene(other: &Lookalike, file: FileId) -> Diagnostic {
         Lookalike::OtherDialect(name) => {
             Diagnostic::error("other-dialect", format!("the file is written in the dialect `{name}`"))
                 .at(span)
-                .help("only the dialect `slides` is read")
+                .help(format!("it is to be read as `{wanted}`; `--dialect {name}` reads it as what it is"))
         }
     }
 }
@@ -120,6 +130,8 @@ struct Call {
     count: usize,
     /// Its name or text argument.
     word: Option<Token>,
+    /// How many tokens stand between the word and the first argument; -1 where the first value is none of them.
+    skip: i32,
 }
 
 /// How many directives of a kind stood in the file, faulty ones included, so that one fault does not shift the numbers
@@ -143,6 +155,8 @@ struct Hint {
 struct Parser<'a> {
     bytes: &'a [u8],
     file: FileId,
+    dialect: Dialect,
+    conventions: &'static Conventions,
     limits: &'a Limits,
     sink: &'a mut Sink,
     lexer: Lexer<'a>,
@@ -157,6 +171,8 @@ struct Parser<'a> {
     instances: Vec<(u32, Span)>,
     /// The open groups by their numbers.
     open: Vec<u32>,
+    affine: jhu::Affines,
+    named: hmc::Named,
     shape_count: u32,
     /// Whether any directive of the language, or a word near to one, was seen.
     recognized: bool,
@@ -165,22 +181,33 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(path: PathBuf, bytes: &'a [u8], file: FileId, limits: &'a Limits, sink: &'a mut Sink) -> Self {
+    fn new(
+        path: PathBuf,
+        bytes: &'a [u8],
+        file: FileId,
+        dialect: Dialect,
+        limits: &'a Limits,
+        sink: &'a mut Sink,
+    ) -> Self {
         let spec = directive::spec(Directive::GroupEnd);
         Self {
             bytes,
             file,
+            dialect,
+            conventions: dialect.conventions(),
             limits,
             sink,
             lexer: Lexer::new(bytes),
-            scene: SceneFile { path, ..SceneFile::default() },
-            call: Call { spec, start: 0, end: 0, count: 0, word: None },
+            scene: SceneFile { path, dialect, ..SceneFile::default() },
+            call: Call { spec, start: 0, end: 0, count: 0, word: None, skip: 0 },
             values: [0.0; MAX_ARGUMENTS],
             tokens: Vec::new(),
             seen: Seen::default(),
             hints: Vec::new(),
             instances: Vec::new(),
             open: Vec::new(),
+            affine: jhu::Affines::default(),
+            named: hmc::Named::default(),
             shape_count: 0,
             recognized: false,
             stopped: false,
@@ -205,7 +232,7 @@ impl<'a> Parser<'a> {
         let after_word = self.lexer.word_end();
         let word = self.bytes.get(start..after_word).unwrap_or_default();
         self.lexer.go_to(after_word);
-        let Some(spec) = directive::find(word) else { return self.odd_word(word, start) };
+        let Some(spec) = directive::find_in(self.dialect, word) else { return self.odd_word(word, start) };
         self.recognized = true;
         self.arguments(spec, start);
     }
@@ -213,11 +240,20 @@ impl<'a> Parser<'a> {
     /// Everything after the word: the fast path, and the close look where it does not do.
     #[inline]
     fn arguments(&mut self, spec: &'static Spec, start: usize) {
+        if self.dialect == Dialect::Hmc {
+            if spec.directive == Directive::RayfileEnd {
+                // What follows is not read, as the course's program does not.
+                return self.lexer.go_to(self.bytes.len());
+            }
+            if !self.flags(spec, start) {
+                return self.count_faulty(spec.directive);
+            }
+        }
         let after_word = self.lexer.at();
         if spec.is_numeric() {
             let numbers = self.lexer.numbers(&mut self.values);
             if numbers.clean && spec.form(numbers.count).is_some() {
-                self.call = Call { spec, start, end: numbers.end, count: numbers.count, word: None };
+                self.call = Call { spec, start, end: numbers.end, count: numbers.count, word: None, skip: 0 };
                 return self.apply();
             }
             self.lexer.go_to(after_word);
@@ -226,10 +262,24 @@ impl<'a> Parser<'a> {
             self.apply();
         } else {
             self.count_faulty(spec.directive);
+            self.done_in_jhu(spec.directive);
         }
     }
 
+    #[inline]
     fn apply(&mut self) {
+        match self.dialect {
+            Dialect::Hmc => self.apply_hmc(),
+            Dialect::Slides | Dialect::Uva | Dialect::Unisa => self.apply_directive(),
+            Dialect::Jhu => {
+                let directive = self.call.spec.directive;
+                self.apply_directive();
+                self.done_in_jhu(directive);
+            }
+        }
+    }
+
+    fn apply_directive(&mut self) {
         match self.call.spec.directive {
             Directive::ShapeSphere => self.sphere(),
             Directive::ShapeBox => self.cuboid(),
@@ -255,6 +305,19 @@ impl<'a> Parser<'a> {
             | Directive::MaterialNum
             | Directive::VertexNum
             | Directive::RayFileNum => self.hint(),
+            Directive::JointBegin => self.joint_begin(),
+            Directive::JointEnd => self.joint_end(),
+            Directive::KeyFile => self.key_file(),
+            Directive::Shader => self.shader(),
+            Directive::StaticAffine => self.static_affine(),
+            Directive::ListBegin => self.list_begin(),
+            Directive::ListEnd => self.list_end(),
+            Directive::Triangles => self.triangles(),
+            Directive::ShapeTorus => self.torus(),
+            Directive::Version | Directive::RayfileEnd => {}
+            Directive::Translate => self.translate(),
+            Directive::Rotate => self.rotate(),
+            Directive::Scale => self.scale(),
         }
     }
 
@@ -265,15 +328,20 @@ impl<'a> Parser<'a> {
                 self.seen.lights += 1;
             }
             Directive::Texture => self.seen.textures += 1,
-            Directive::Material => self.seen.materials += 1,
+            Directive::Material => {
+                self.seen.materials += 1;
+                self.faulty_name();
+            }
             Directive::Vertex => self.seen.vertices += 1,
             Directive::RayFile => self.seen.includes += 1,
             // A group that could not be read is still a group, or its end would be a second fault.
-            Directive::GroupBegin => self.open_group(crate::model::Placed {
-                value: dotray_geometry::Mat4::IDENTITY,
-                span: self.call_span(),
-            }),
-            Directive::GroupEnd => self.group_end(),
+            Directive::GroupBegin | Directive::JointBegin => {
+                self.open_group(Placed { value: Mat4::IDENTITY, span: self.call_span() });
+            }
+            Directive::GroupEnd | Directive::JointEnd => self.group_end(),
+            Directive::StaticAffine => self.open_affine(Mat4::IDENTITY),
+            Directive::ListBegin => self.list_begin(),
+            Directive::ListEnd => self.list_end(),
             Directive::Camera
             | Directive::Background
             | Directive::Ambient
@@ -287,7 +355,16 @@ impl<'a> Parser<'a> {
             | Directive::ShapeTriangle
             | Directive::VertexNum
             | Directive::RayFileNum
-            | Directive::RayFileInstance => {}
+            | Directive::RayFileInstance
+            | Directive::KeyFile
+            | Directive::Shader
+            | Directive::Triangles
+            | Directive::ShapeTorus
+            | Directive::Version
+            | Directive::RayfileEnd
+            | Directive::Translate
+            | Directive::Rotate
+            | Directive::Scale => {}
         }
     }
 
@@ -295,7 +372,8 @@ impl<'a> Parser<'a> {
     #[cold]
     fn odd_word(&mut self, word: &[u8], start: usize) {
         let span = self.span(start, start + word.len());
-        if let Some(spec) = directive::find_in_any_case(word) {
+        let mut known = directive::words_of(self.dialect);
+        if let Some(spec) = known.find(|spec| spec.word.as_bytes().eq_ignore_ascii_case(word)) {
             self.recognized = true;
             let shown = arguments::shown(word);
             self.sink.warn("letter-case", || {
@@ -305,14 +383,18 @@ impl<'a> Parser<'a> {
             });
             return self.arguments(spec, start);
         }
-        let suggestion = directive::suggest(word);
-        let dialect = lookalike::foreign_directive(word);
+        if self.dialect == Dialect::Jhu && lookalike::is_solid_geometry(word) {
+            return self.solid_geometry(word, span);
+        }
+        let suggestion = directive::suggest_in(self.dialect, word);
+        let dialect = lookalike::foreign_directive(word).filter(|other| *other != self.dialect.name());
         self.recognized |= suggestion.is_some() || dialect.is_some();
         let error =
             Diagnostic::error("unknown-directive", format!("unknown directive {}", arguments::shown(word)));
         let error = error.at(span).label("no directive has this name");
+        let read = self.dialect;
         let foreign = dialect
-            .map(|dialect| format!("it belongs to the dialect `{dialect}`, and only `slides` is read"));
+            .map(|dialect| format!("it belongs to the dialect `{dialect}`; the file is read as `{read}`"));
         let meant = suggestion.map(|spec| format!("did you mean `{}`?", spec.word));
         let comment = (word == b"#").then(|| "a comment begins with `//`".to_owned());
         let help: Vec<String> = [foreign, meant, comment].into_iter().flatten().collect();

@@ -1,8 +1,10 @@
-//! Diagnostics as text for people: the message, the line, a caret under the token.
+//! Diagnostics as text for people: the place and the message, the line, a caret under the token.
 
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Severity;
+use crate::sources::Position;
 use crate::sources::Sources;
+use crate::span::FileId;
 use crate::span::Span;
 use annotate_snippets::Annotation;
 use annotate_snippets::AnnotationKind;
@@ -20,7 +22,8 @@ const WINDOW: usize = 300;
 /// Marks the path of a snippet that shows only part of its line; what it says of columns is then corrected.
 const CUT: char = '\u{E0F0}';
 
-/// All diagnostics, one after the other, each followed by an empty line.
+/// All diagnostics, one after the other, each followed by an empty line. Each begins `file:line:column: error[code]: `,
+/// which editors know how to jump to; where the whole scene is meant, `file: `.
 pub fn render_text(diagnostics: &[Diagnostic], sources: &Sources, color: bool) -> String {
     let renderer = if color { Renderer::styled() } else { Renderer::plain() }.term_width(WIDTH);
     let mut text = String::new();
@@ -39,7 +42,7 @@ fn one(diagnostic: &Diagnostic, sources: &Sources, renderer: &Renderer) -> Strin
     let mut corrections = Vec::new();
     let mut group = Group::with_title(level.primary_title(diagnostic.message.as_str()).id(diagnostic.code));
     if let Some(span) = diagnostic.span {
-        group = group.element(snippet(sources, span, &diagnostic.label, &mut corrections));
+        group = group.element(snippet(sources, span, &diagnostic.label).snippet);
     }
     let mut groups = Vec::new();
     for (span, note) in &diagnostic.notes {
@@ -47,7 +50,15 @@ fn one(diagnostic: &Diagnostic, sources: &Sources, renderer: &Renderer) -> Strin
             None => group = group.element(Level::NOTE.message(note.as_str())),
             Some(span) => {
                 let title = Level::NOTE.secondary_title(note.as_str());
-                groups.push(Group::with_title(title).element(snippet(sources, *span, "", &mut corrections)));
+                let part = snippet(sources, *span, "");
+                let mut path = shown_path(sources, span.file);
+                if part.shown_column != part.place.column {
+                    let Position { line, column } = part.place;
+                    path.push(CUT);
+                    let shown = format!("{CUT}:{line}:{}", part.shown_column);
+                    corrections.push((shown, format!(":{line}:{column}")));
+                }
+                groups.push(Group::with_title(title).element(part.snippet.path(path)));
             }
         }
     }
@@ -59,16 +70,36 @@ fn one(diagnostic: &Diagnostic, sources: &Sources, renderer: &Renderer) -> Strin
     for (shown, right) in corrections {
         text = text.replacen(&shown, &right, 1);
     }
-    text
+    place(sources, diagnostic.span) + &text
+}
+
+/// `file:line:column: `, `file: ` for a whole scene, nothing where no file was read.
+fn place(sources: &Sources, span: Option<Span>) -> String {
+    match span {
+        Some(span) => {
+            let Position { line, column } = sources.position(span);
+            format!("{}:{line}:{column}: ", shown_path(sources, span.file))
+        }
+        None if sources.is_empty() => String::new(),
+        None => format!("{}: ", shown_path(sources, FileId(0))),
+    }
+}
+
+fn shown_path(sources: &Sources, file: FileId) -> String {
+    let path = sources.path(file).display().to_string();
+    path.chars().map(|c| if c.is_control() || c == CUT { '\u{FFFD}' } else { c }).collect()
+}
+
+/// A line with its caret, not yet with its path.
+struct Part<'a> {
+    snippet: Snippet<'a, Annotation<'a>>,
+    place: Position,
+    /// The column in the part of the line that is shown.
+    shown_column: usize,
 }
 
 /// The line where a span starts, or the part of it around the span.
-fn snippet<'a>(
-    sources: &Sources,
-    span: Span,
-    label: &'a str,
-    corrections: &mut Vec<(String, String)>,
-) -> Snippet<'a, Annotation<'a>> {
+fn snippet<'a>(sources: &Sources, span: Span, label: &'a str) -> Part<'a> {
     let bytes = sources.bytes(span.file);
     let place = sources.position(span);
     let line = sources.line_start(span);
@@ -84,18 +115,10 @@ fn snippet<'a>(
     let carets = before.len()..before.len() + token.len();
     let shown_column = before.chars().count() + 1;
 
-    let mut path: String = sources.path(span.file).display().to_string();
-    path = path.chars().map(|c| if c.is_control() { '\u{FFFD}' } else { c }).collect();
-    if shown_column != place.column {
-        path.push(CUT);
-        corrections.push((
-            format!("{CUT}:{}:{shown_column}", place.line),
-            format!(":{}:{}", place.line, place.column),
-        ));
-    }
     let annotation = AnnotationKind::Primary.span(carets);
     let annotation = if label.is_empty() { annotation } else { annotation.label(label) };
-    Snippet::source(before + &token + &after).path(path).line_start(place.line).annotation(annotation)
+    let snippet = Snippet::source(before + &token + &after).line_start(place.line).annotation(annotation);
+    Part { snippet, place, shown_column }
 }
 
 /// The end of the line, or of as much of it as is looked at.
@@ -130,8 +153,7 @@ mod tests {
     fn it_looks_like_rustc() {
         let text = render(b"#a 1\n\t#b two 3\r\n#c", 9, 12);
         let expected = "\
-error[code]: message
- --> a.ray:2:5
+a.ray:2:5: error[code]: message
   |
 2 |     #b two 3
   |        ^^^ here
@@ -141,6 +163,17 @@ error[code]: message
 
 ";
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn a_whole_scene_is_named_by_its_file() {
+        let mut sources = Sources::default();
+        let fault = || Diagnostic::warning("code", "message");
+        assert_eq!(render_text(&[fault()], &sources, false), "warning[code]: message\n\n");
+        let file = sources.add(PathBuf::from("a\n.ray"), b"#a\n#b".to_vec());
+        assert_eq!(render_text(&[fault()], &sources, false), "a\u{FFFD}.ray: warning[code]: message\n\n");
+        let text = render_text(&[fault().note_at(Span::new(file, 3, 5), "there")], &sources, false);
+        assert!(text.contains("note: there\n --> a\u{FFFD}.ray:2:1\n"), "{text}");
     }
 
     #[test]

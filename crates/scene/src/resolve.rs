@@ -5,11 +5,15 @@ mod camera;
 mod flatten;
 mod material;
 
+pub use material::resolve_texture;
+
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Severity;
 use crate::diagnostic::Sink;
+use crate::dialect::Dialect;
 use crate::model::Scene;
 use crate::model::SceneFile;
+use crate::model::Tint;
 use crate::resolved::Resolved;
 use crate::walk::DEFAULT_STEPS;
 use dotray_geometry::Vec3;
@@ -105,11 +109,16 @@ pub fn resolve_within(scene: Scene, limits: &Limits) -> Outcome {
         warn(&mut sink, "no-shape", "the scene has no shape: the picture is all background");
     }
     let color = |place: fn(&SceneFile) -> Option<Vec3>| main.and_then(place).unwrap_or(Vec3::ZERO);
+    let background = color(|file| file.background.map(|placed| placed.value));
+    let conventions = main.map_or(Dialect::Slides, |file| file.dialect).conventions();
+    let tints = main.map_or(&[][..], |file| &file.tints).iter().copied();
     let mut resolved = Resolved {
         camera: main.and_then(|file| file.camera).map_or(camera::FALLBACK, |placed| placed.value),
-        background: color(|file| file.background.map(|placed| placed.value)),
+        background,
+        secondary_background: if conventions.background_behind_surfaces { background } else { Vec3::ZERO },
         ambient: color(|file| file.ambient.map(|placed| placed.value)),
         lights: main.map_or_else(Vec::new, |file| file.lights.iter().map(|placed| placed.value).collect()),
+        tints: tints.chain(std::iter::repeat(Tint::PLAIN)).take(light_count).collect(),
         materials: materials.materials,
         textures: materials.textures,
         frames: flat.frames,

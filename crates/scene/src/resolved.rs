@@ -5,6 +5,7 @@ use crate::model::Color;
 use crate::model::Light;
 use crate::model::SceneFile;
 use crate::model::ShapeKind;
+use crate::model::Tint;
 use crate::procedural::Procedural;
 use crate::span::FileId;
 use crate::span::Span;
@@ -24,10 +25,14 @@ pub struct ResolvedMaterial {
     pub emissive: Color,
     /// The highlight's exponent: 128 kSpec.
     pub shininess: f64,
-    /// What a mirrored ray's colour is multiplied by: kSpec · M_S.
+    /// What a mirrored ray's colour is multiplied by: kSpec · M_S, unless the dialect gives it by itself.
     pub reflection: Color,
-    /// What a refracted or shadow ray's colour is multiplied by: kTrans · M_S.
+    /// What a refracted ray's colour is multiplied by: kTrans · M_S.
     pub transmission: Color,
+    /// What a shadow ray's colour is multiplied by.
+    pub shadow: Color,
+    /// Whether a texture colours highlights and emission, too.
+    pub texture_on_all_light: bool,
     /// ir; above 0 where `transmission` is not 0.
     pub index_of_refraction: f64,
     /// The number of a texture in [`Resolved::textures`].
@@ -84,10 +89,14 @@ pub struct Resolved {
     pub camera: Camera,
     /// What a ray that hits nothing returns.
     pub background: Color,
+    /// What a mirrored or refracted ray that hits nothing returns.
+    pub secondary_background: Color,
     /// L_G
     pub ambient: Color,
     /// The lights of the file asked for.
     pub lights: Vec<Light>,
+    /// As many tints.
+    pub tints: Vec<Tint>,
     /// All files' materials; the last one is the default material.
     pub materials: Vec<ResolvedMaterial>,
     /// All files' textures.

@@ -9,8 +9,16 @@ use dotray_geometry::Triangle;
 
 impl ShapeKind {
     /// Every kind.
-    pub const ALL: [Self; 6] =
-        [Self::Sphere, Self::Cuboid, Self::Cylinder, Self::Cone, Self::Triangle, Self::IndexedTriangle];
+    pub const ALL: [Self; 8] = [
+        Self::Sphere,
+        Self::Cuboid,
+        Self::Cylinder,
+        Self::Cone,
+        Self::Triangle,
+        Self::IndexedTriangle,
+        Self::Torus,
+        Self::Open,
+    ];
 
     /// The directive that makes such a shape.
     pub const fn directive(self) -> &'static str {
@@ -20,6 +28,8 @@ impl ShapeKind {
             Self::Cylinder => "#shape_cylinder",
             Self::Cone => "#shape_cone",
             Self::Triangle | Self::IndexedTriangle => "#shape_triangle",
+            Self::Torus => "#shape_torus",
+            Self::Open => "#cylinder",
         }
     }
 }
@@ -34,6 +44,8 @@ impl SceneFile {
             ShapeKind::Cone => self.cones.shapes.len(),
             ShapeKind::Triangle => self.triangles.shapes.len(),
             ShapeKind::IndexedTriangle => self.indexed_triangles.shapes.len(),
+            ShapeKind::Torus => self.tori.shapes.len(),
+            ShapeKind::Open => self.open_sides.shapes.len(),
         }
     }
 
@@ -46,6 +58,8 @@ impl SceneFile {
             ShapeKind::Cone => &self.cones.materials,
             ShapeKind::Triangle => &self.triangles.materials,
             ShapeKind::IndexedTriangle => &self.indexed_triangles.materials,
+            ShapeKind::Torus => &self.tori.materials,
+            ShapeKind::Open => &self.open_sides.materials,
         }
     }
 
@@ -58,6 +72,8 @@ impl SceneFile {
             ShapeKind::Cone => &self.cones.starts,
             ShapeKind::Triangle => &self.triangles.starts,
             ShapeKind::IndexedTriangle => &self.indexed_triangles.starts,
+            ShapeKind::Torus => &self.tori.starts,
+            ShapeKind::Open => &self.open_sides.starts,
         };
         let start = starts.get(index)?;
         Some(Span { file, start, end: start + kind.directive().len() as u64 })
@@ -80,6 +96,8 @@ impl SceneFile {
             ShapeKind::Cylinder => self.cylinders.shapes.get(index).copied().map(Shape::Cylinder),
             ShapeKind::Cone => self.cones.shapes.get(index).copied().map(Shape::Cone),
             ShapeKind::Triangle => self.triangles.shapes.get(index).copied().map(Shape::Triangle),
+            ShapeKind::Torus => self.tori.shapes.get(index).copied().map(Shape::Torus),
+            ShapeKind::Open => self.open_sides.shapes.get(index).copied().map(Shape::Open),
             ShapeKind::IndexedTriangle => {
                 let corners = self.indexed_triangles.shapes.get(index).copied()?;
                 self.indexed_triangle(corners).map(Shape::Triangle)

@@ -40,6 +40,14 @@ impl Sources {
         FileId(number)
     }
 
+    /// Takes away the content of a file, of which nothing more is to be said.
+    pub fn take_bytes(&mut self, file: FileId) -> Vec<u8> {
+        self.files
+            .get_mut(file.0 as usize)
+            .map(|source| std::mem::take(&mut source.bytes))
+            .unwrap_or_default()
+    }
+
     /// How many files there are.
     pub fn len(&self) -> usize {
         self.files.len()

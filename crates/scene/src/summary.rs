@@ -31,12 +31,23 @@ pub struct ShapeCounts {
     pub triangles: u64,
     /// Triangles of shared vertices.
     pub indexed_triangles: u64,
+    /// Tori.
+    pub tori: u64,
+    /// Cylinders and cones without their discs.
+    pub open: u64,
 }
 
 impl ShapeCounts {
     /// All shapes.
     pub fn total(&self) -> u64 {
-        self.spheres + self.boxes + self.cylinders + self.cones + self.triangles + self.indexed_triangles
+        self.spheres
+            + self.boxes
+            + self.cylinders
+            + self.cones
+            + self.triangles
+            + self.indexed_triangles
+            + self.tori
+            + self.open
     }
 
     fn add(&mut self, kind: ShapeKind, count: u64) {
@@ -47,6 +58,8 @@ impl ShapeCounts {
             ShapeKind::Cone => &mut self.cones,
             ShapeKind::Triangle => &mut self.triangles,
             ShapeKind::IndexedTriangle => &mut self.indexed_triangles,
+            ShapeKind::Torus => &mut self.tori,
+            ShapeKind::Open => &mut self.open,
         };
         *place += count;
     }
@@ -170,7 +183,8 @@ impl fmt::Display for Summary {
         for file in &self.files {
             writeln!(f, "file        {}", file.display())?;
         }
-        let ShapeCounts { spheres, boxes, cylinders, cones, triangles, indexed_triangles } = self.shapes;
+        let ShapeCounts { spheres, boxes, cylinders, cones, triangles, indexed_triangles, tori, open } =
+            self.shapes;
         let kinds = parts(&[
             (spheres, "sphere", "spheres"),
             (boxes, "box", "boxes"),
@@ -178,6 +192,8 @@ impl fmt::Display for Summary {
             (cones, "cone", "cones"),
             (triangles, "triangle", "triangles"),
             (indexed_triangles, "indexed triangle", "indexed triangles"),
+            (tori, "torus", "tori"),
+            (open, "open cylinder or cone", "open cylinders and cones"),
         ]);
         writeln!(f, "shapes      {}{kinds}", self.shapes.total())?;
         writeln!(f, "vertices    {}", self.vertices)?;

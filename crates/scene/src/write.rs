@@ -1,5 +1,8 @@
 //! A scene file as `.ray` text in one canonical form: reading it back gives the same file, apart from places.
 
+mod foreign;
+
+use crate::dialect::Dialect;
 use crate::model::Attenuation;
 use crate::model::Camera;
 use crate::model::Item;
@@ -7,6 +10,7 @@ use crate::model::Light;
 use crate::model::Material;
 use crate::model::SceneFile;
 use crate::model::ShapeKind;
+use crate::model::Tint;
 use crate::model::Vertex;
 use crate::number::Shortest;
 use dotray_geometry::Mat4;
@@ -15,8 +19,9 @@ use dotray_geometry::Vec3;
 use std::fmt;
 use std::fmt::Write;
 
-/// The text of one file. Names and material texts that no `.ray` text can hold (a `!` inside `!…!`, a `"` inside
-/// a name that needs quotation marks) lose those signs.
+/// The text of one file in its own dialect, where that is `uva` or `jhu`, else in the slides' own. Names and material
+/// texts that no `.ray` text can hold (a `!` inside `!…!`, a `"` inside a name that needs quotation marks) lose those
+/// signs.
 pub fn write(file: &SceneFile) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -33,7 +38,15 @@ pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
         // A text without any directive would be no scene.
         return writeln!(out, "#light_num 0");
     }
-    if let Some(camera) = &file.camera {
+    let by_weights = match file.dialect {
+        Dialect::Uva | Dialect::Jhu => true,
+        Dialect::Slides | Dialect::Hmc | Dialect::Unisa => false,
+    };
+    // Only the slides' own and `uva` say how many follow.
+    let counted = file.dialect != Dialect::Jhu;
+    if let Some(camera) = file.camera.as_ref().filter(|_| by_weights) {
+        foreign::write_camera(out, &camera.value)?;
+    } else if let Some(camera) = &file.camera {
         let Camera { position, direction, up, half_angle } = camera.value;
         let angle = Shortest(half_angle);
         writeln!(out, "#camera {} {} {} {angle}", Triple(position), Triple(direction), Triple(up))?;
@@ -44,18 +57,25 @@ pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
     if let Some(ambient) = &file.ambient {
         writeln!(out, "#ambient {}", Triple(ambient.value))?;
     }
-    write_list(out, "#light_num", &file.lights, |out, light| write_light(out, &light.value))?;
-    write_list(out, "#texture_num", &file.textures, |out, name| {
+    let mut tints = file.tints.iter().chain(std::iter::repeat(&Tint::PLAIN));
+    write_list(out, counted, "#light_num", &file.lights, |out, light| match (by_weights, tints.next()) {
+        (true, Some(tint)) => foreign::write_light(out, file.dialect, &light.value, tint),
+        (true, None) | (false, _) => write_light(out, &light.value),
+    })?;
+    write_list(out, counted, "#texture_num", &file.textures, |out, name| {
         writeln!(out, "#texture {}", Name(&name.value))
     })?;
-    write_list(out, "#material_num", &file.materials, |out, material| write_material(out, &material.value))?;
-    write_list(out, "#vertex_num", &file.vertices, |out, Vertex { position, normal, texcoord }| {
+    write_list(out, counted, "#material_num", &file.materials, |out, material| match by_weights {
+        true => foreign::write_material(out, &material.value),
+        false => write_material(out, &material.value),
+    })?;
+    write_list(out, counted, "#vertex_num", &file.vertices, |out, Vertex { position, normal, texcoord }| {
         writeln!(out, "#vertex {} {} {}", Triple(*position), Triple(*normal), Pair(*texcoord))
     })?;
     for include in &file.includes {
         writeln!(out, "#ray_file {}", Name(&include.value.name))?;
     }
-    write_items(out, file)
+    if file.dialect == Dialect::Jhu { foreign::write_items(out, file) } else { write_items(out, file) }
 }
 
 fn is_empty(file: &SceneFile) -> bool {
@@ -70,6 +90,7 @@ fn is_empty(file: &SceneFile) -> bool {
 /// The hint and the entries; nothing for an empty list.
 fn write_list<T, W: Write>(
     out: &mut W,
+    counted: bool,
     hint: &str,
     list: &[T],
     mut entry: impl FnMut(&mut W, &T) -> fmt::Result,
@@ -77,7 +98,9 @@ fn write_list<T, W: Write>(
     if list.is_empty() {
         return Ok(());
     }
-    writeln!(out, "{hint} {}", list.len())?;
+    if counted {
+        writeln!(out, "{hint} {}", list.len())?;
+    }
     list.iter().try_for_each(|value| entry(out, value))
 }
 
@@ -165,6 +188,12 @@ fn write_shape(out: &mut impl Write, file: &SceneFile, kind: ShapeKind, index: u
             let [ta, tb, tc] = triangle.texcoords().map(Pair);
             write!(out, "  {a}  {b}  {c}  {na}  {nb}  {nc}  {ta}  {tb}  {tc}")
         }),
+        ShapeKind::Torus => file.tori.shapes.get(index).map_or(Ok(()), |torus| {
+            let [tube, ring] = [torus.tube(), torus.ring()].map(Shortest);
+            write!(out, " {} {tube} {ring}", Triple(torus.center()))
+        }),
+        // No dialect that is written has such a shape.
+        ShapeKind::Open => Ok(()),
         ShapeKind::IndexedTriangle => {
             file.indexed_triangles.shapes.get(index).map_or(Ok(()), |[a, b, c]| write!(out, " {a} {b} {c}"))
         }

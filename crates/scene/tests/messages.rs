@@ -3,15 +3,23 @@
 //!     //~ LINE:COLUMN severity[code] part of the text | another part
 //!
 //! `FILE:LINE:COLUMN` is a place in an included file, `-` no place. All diagnostics of a file must be expected, and all
-//! expected ones must come. `//~ limit NAME VALUE` sets a limit.
+//! expected ones must come. `//~ limit NAME VALUE` sets a limit, `//~ dialect NAME` the dialect; `//~ whole` goes on
+//! after reading: the scene is resolved and looked over as `dotray check` does.
 
+use dotray_scene::context::name_groups;
 use dotray_scene::diagnostic::Diagnostic;
 use dotray_scene::diagnostic::READER_CODES;
 use dotray_scene::diagnostic::Severity;
+use dotray_scene::dialect::Dialect;
 use dotray_scene::files::Disk;
+use dotray_scene::lint::LINT_CODES;
+use dotray_scene::lint::lint;
 use dotray_scene::load::LoadOptions;
+use dotray_scene::load::Loaded;
 use dotray_scene::load::load;
 use dotray_scene::report::render_text;
+use dotray_scene::resolve::RESOLVER_CODES;
+use dotray_scene::resolve::resolve;
 use dotray_scene::sources::Position;
 use dotray_scene::sources::Sources;
 use std::collections::BTreeSet;
@@ -48,15 +56,30 @@ fn body(diagnostic: &Diagnostic) -> String {
     format!("{}\n{}\n{}\n{help}", diagnostic.message, diagnostic.label, notes.join("\n"))
 }
 
+struct Wanted {
+    messages: Vec<Expected>,
+    options: LoadOptions,
+    whole: bool,
+}
+
 struct Expected {
     head: String,
     parts: Vec<String>,
 }
 
-fn expectations(text: &str) -> (Vec<Expected>, LoadOptions) {
+fn expectations(text: &str) -> Wanted {
     let mut expected = Vec::new();
     let mut options = LoadOptions::default();
+    let mut whole = false;
     for marker in text.lines().filter_map(|line| line.split_once("//~ ")).map(|(_, marker)| marker) {
+        if let Some(name) = marker.strip_prefix("dialect ") {
+            options.dialect = Some(Dialect::of_name(name.trim()).unwrap());
+            continue;
+        }
+        if marker.trim() == "whole" {
+            whole = true;
+            continue;
+        }
         if let Some(limit) = marker.strip_prefix("limit ") {
             let (limit, value) = limit.split_once(' ').unwrap();
             let value: u32 = value.trim().parse().unwrap();
@@ -73,18 +96,35 @@ fn expectations(text: &str) -> (Vec<Expected>, LoadOptions) {
         let parts = parts.split(" | ").map(|part| part.trim().to_owned()).filter(|part| !part.is_empty());
         expected.push(Expected { head: format!("{head}]"), parts: parts.collect() });
     }
-    (expected, options)
+    Wanted { messages: expected, options, whole }
+}
+
+/// What resolving and looking over say, too.
+fn go_on(loaded: Loaded) -> (Vec<Diagnostic>, Sources) {
+    let Loaded { scene, mut diagnostics, sources, .. } = loaded;
+    let outcome = scene.map(resolve);
+    if let Some(outcome) = outcome {
+        diagnostics.extend(outcome.diagnostics);
+        diagnostics.extend(outcome.resolved.iter().flat_map(lint));
+    }
+    name_groups(&mut diagnostics, &sources);
+    (diagnostics, sources)
 }
 
 /// What is wrong with the messages of one file; empty if nothing is.
 fn faults(path: &Path, seen: &mut BTreeSet<&'static str>) -> String {
     let text = String::from_utf8_lossy(&std::fs::read(path).unwrap()).into_owned();
-    let (mut expected, options) = expectations(&text);
+    let Wanted { messages: mut expected, options, whole } = expectations(&text);
     let loaded = load(path, &Disk, &options);
     let mut faults = String::new();
-    for diagnostic in &loaded.diagnostics {
+    let has_errors = loaded.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+    if has_errors == loaded.scene.is_some() {
+        faults.push_str("a scene is given exactly where there are no errors\n");
+    }
+    let (diagnostics, sources) = if whole { go_on(loaded) } else { (loaded.diagnostics, loaded.sources) };
+    for diagnostic in &diagnostics {
         seen.insert(diagnostic.code);
-        let (head, body) = (head(diagnostic, &loaded.sources), body(diagnostic));
+        let (head, body) = (head(diagnostic, &sources), body(diagnostic));
         let place = expected.iter().position(|wanted| {
             wanted.head == head && wanted.parts.iter().all(|part| body.contains(part.as_str()))
         });
@@ -96,16 +136,12 @@ fn faults(path: &Path, seen: &mut BTreeSet<&'static str>) -> String {
     for Expected { head, parts } in expected {
         faults.push_str(&format!("missing: {head} {}\n", parts.join(" | ")));
     }
-    let has_errors = loaded.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
-    if has_errors == loaded.scene.is_some() {
-        faults.push_str("a scene is given exactly where there are no errors\n");
-    }
     // Rendering must work for every message that there is.
-    let shown = render_text(&loaded.diagnostics, &loaded.sources, false);
+    let shown = render_text(&diagnostics, &sources, false);
     if std::env::var_os("SHOW").is_some() {
         println!("{shown}");
     }
-    for diagnostic in &loaded.diagnostics {
+    for diagnostic in &diagnostics {
         if !shown.contains(&format!("{}[{}]: ", name(diagnostic.severity), diagnostic.code)) {
             faults.push_str(&format!("{} is not rendered\n", diagnostic.code));
         }
@@ -126,10 +162,11 @@ fn all_and_only_the_expected_messages_come() {
         }
     }
     assert!(faulty.is_empty(), "\n{faulty}");
-    let known: BTreeSet<_> = READER_CODES.iter().map(|(code, _, _)| *code).collect();
+    let lists = [READER_CODES, RESOLVER_CODES, LINT_CODES];
+    let known: BTreeSet<_> = lists.into_iter().flatten().map(|(code, _, _)| *code).collect();
     assert_eq!(seen.difference(&known).collect::<Vec<_>>(), Vec::<&&str>::new(), "codes that are not listed");
-    // The last of these has no file to stand in.
-    let never: Vec<_> = known.difference(&seen).filter(|code| **code != "cannot-read").collect();
+    // No file can give this one.
+    let never: Vec<_> = known.difference(&seen).filter(|code| **code != "broken-scene").collect();
     assert!(never.is_empty(), "codes without a file: {never:?}");
 }
 

@@ -261,6 +261,7 @@ fn material(textures: u32) -> impl Strategy<Value = Material> {
             index_of_refraction,
             texture,
             text,
+            weights: None,
         },
     )
 }

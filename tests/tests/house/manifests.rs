@@ -2,10 +2,17 @@
 
 use super::rust::root;
 
-const FLOORS: [&str; 5] =
-    ["dotray-geometry", "dotray-image", "dotray-accel", "dotray-scene", "dotray-render"];
-const EVERYTHING: [&str; 6] =
-    ["dotray-geometry", "dotray-image", "dotray-accel", "dotray-scene", "dotray-render", "dotray"];
+const FLOORS: [&str; 6] =
+    ["dotray-geometry", "dotray-image", "dotray-accel", "dotray-scene", "dotray-render", "dotray-grade"];
+const EVERYTHING: [&str; 7] = [
+    "dotray-geometry",
+    "dotray-image",
+    "dotray-accel",
+    "dotray-scene",
+    "dotray-render",
+    "dotray-grade",
+    "dotray",
+];
 
 /// Which members of the workspace a member may use; a member that is not here must be added with care.
 fn allowed(member: &str) -> Option<&'static [&'static str]> {
@@ -13,6 +20,7 @@ fn allowed(member: &str) -> Option<&'static [&'static str]> {
         "dotray-geometry" | "dotray-image" => &[],
         "dotray-accel" | "dotray-scene" => &FLOORS[..1],
         "dotray-render" => &FLOORS[..4],
+        "dotray-grade" => &FLOORS[..5],
         "dotray" | "dotray-viewer" | "dotray-python" => &FLOORS,
         "dotray-tests" | "dotray-xtask" | "xtask" => &EVERYTHING,
         _ => return None,

@@ -1,6 +1,7 @@
 //! The whole way, from files as people write them: the gallery with the program itself, text that is written back,
 //! other people's scenes, broken ones.
 
+mod dialects;
 mod gallery;
 mod hostile;
 mod real_scenes;

@@ -58,6 +58,8 @@ fn clear(file: &mut SceneFile) {
         &mut file.cones.starts,
         &mut file.triangles.starts,
         &mut file.indexed_triangles.starts,
+        &mut file.tori.starts,
+        &mut file.open_sides.starts,
     ] {
         *starts = PackedStarts::default();
     }

@@ -19,7 +19,7 @@ use crate::values::When;
 /// Prints the tree, then what is wrong with the scene: a tree helps to find a fault in it.
 pub fn run(typed: &DumpArgs, color: When) -> Result<(), Failure> {
     let messages = Messages::new(color, false);
-    let Written { scene, warnings, sources, .. } = read(&Place::of(&typed.scene), messages)?;
+    let Written { scene, warnings, sources, .. } = read(&Place::of(&typed.scene), typed.reading, messages)?;
     let mut out = BufWriter::new(io::stdout().lock());
     let printed = dump(&scene.files, DumpOptions { world: typed.world }, &mut out).and_then(|()| out.flush());
     printed.map_err(|error| stdout_failure(&error))?;

@@ -17,7 +17,7 @@ use crate::values::When;
 
 /// Prints the scene in numbers.
 pub fn run(typed: &InfoArgs, color: When) -> Result<(), Failure> {
-    let understood = understand(&Place::of(&typed.scene), Messages::new(color, false))?;
+    let understood = understand(&Place::of(&typed.scene), typed.reading, Messages::new(color, false))?;
     let summary = summarize(&understood.resolved);
     match typed.format {
         TextOrJson::Text => put(summary.to_string().as_bytes()),
@@ -44,6 +44,8 @@ fn json(summary: &Summary) -> Value {
             "cones": shapes.cones,
             "triangles": shapes.triangles,
             "indexed_triangles": shapes.indexed_triangles,
+            "tori": shapes.tori,
+            "open": shapes.open,
         },
         "vertices": vertices,
         "groups": groups,

@@ -13,6 +13,7 @@ use crate::cost::memory;
 use crate::exit::Failure;
 use crate::exit::put;
 use crate::exit::say;
+use crate::input;
 use crate::input::Understood;
 use crate::input::understand;
 use crate::interrupt;
@@ -23,6 +24,7 @@ use crate::plan::Plan;
 use crate::plan::plan;
 use crate::progress::Watcher;
 use crate::render_args::RenderArgs;
+use crate::values::MissingTexture;
 use crate::values::TextOrJson;
 use crate::values::When;
 use std::io::IsTerminal;
@@ -35,8 +37,12 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     output::check(&plan.output, &plan.input)?;
     interrupt::watch();
     let messages = Messages::new(color, plan.quiet);
-    let Understood { resolved, sources, disk, text_bytes, mut seconds } = understand(&plan.input, messages)?;
+    let Understood { mut resolved, sources, disk, text_bytes, mut seconds } =
+        understand(&plan.input, typed.reading, messages)?;
     interrupt::check()?;
+    if typed.missing_texture == MissingTexture::White {
+        input::whiten(&mut resolved, plan.quiet);
+    }
     let world = World::prepare(resolved, &disk, &plan.prepare).map_err(|faults| {
         messages.print(&faults, &sources);
         Failure::Reported

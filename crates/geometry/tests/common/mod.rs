@@ -3,7 +3,9 @@
 // Each test program uses its own part of this file.
 #![allow(dead_code)]
 
-use dotray_geometry::{Affine, Cone, Cuboid, Cylinder, Mat3, Ray, Shape, Sphere, Triangle, Vec2, Vec3};
+use dotray_geometry::{
+    Affine, Cone, Cuboid, Cylinder, Mat3, Ray, Shape, Sphere, Torus, Triangle, Vec2, Vec3,
+};
 use proptest::array::uniform3;
 use proptest::prelude::*;
 
@@ -46,6 +48,8 @@ pub fn solid() -> impl Strategy<Value = Shape> {
             .prop_map(|(c, size)| { Shape::Cuboid(Cuboid::new(c, Vec3::from_array(size)).unwrap()) }),
         (center(), length(), length()).prop_map(|(c, r, h)| Shape::Cylinder(Cylinder::new(c, r, h).unwrap())),
         (center(), length(), length()).prop_map(|(c, r, h)| Shape::Cone(Cone::new(c, r, h).unwrap())),
+        (center(), length(), 0.01..1.0f64)
+            .prop_map(|(c, ring, part)| Shape::Torus(Torus::new(c, ring * part, ring).unwrap())),
     ]
 }
 
@@ -116,6 +120,10 @@ pub fn depth(shape: &Shape, p: Vec3) -> f64 {
             let gap = below_apex * c.radius() / c.height() - libm::hypot(p.x, p.z);
             (p.y + c.height() * 0.5).min(gap * c.height() / libm::hypot(c.radius(), c.height()))
         }
-        Shape::Triangle(_) => f64::NAN,
+        Shape::Torus(torus) => {
+            let p = p - torus.center();
+            torus.tube() - libm::hypot(libm::hypot(p.x, p.z) - torus.ring(), p.y)
+        }
+        Shape::Triangle(_) | Shape::Open(_) => f64::NAN,
     }
 }

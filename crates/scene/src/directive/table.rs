@@ -7,7 +7,7 @@ use super::Form;
 use super::Origin;
 use super::Spec;
 
-const fn form(arguments: &'static [Arguments], example: &'static str) -> Form {
+pub(super) const fn form(arguments: &'static [Arguments], example: &'static str) -> Form {
     let mut count = 0;
     let mut numeric = true;
     let mut group = 0;
@@ -19,7 +19,7 @@ const fn form(arguments: &'static [Arguments], example: &'static str) -> Form {
     Form { arguments, count, numeric, example }
 }
 
-const fn group(
+pub(super) const fn group(
     kind: ArgumentKind,
     names: &'static [&'static str],
     unit: &'static str,
@@ -28,32 +28,33 @@ const fn group(
     Arguments { names, kind, unit, meaning }
 }
 
-const fn numbers(names: &'static [&'static str], meaning: &'static str) -> Arguments {
+pub(super) const fn numbers(names: &'static [&'static str], meaning: &'static str) -> Arguments {
     group(ArgumentKind::Number, names, "", meaning)
 }
 
-const fn lengths(names: &'static [&'static str], meaning: &'static str) -> Arguments {
+pub(super) const fn lengths(names: &'static [&'static str], meaning: &'static str) -> Arguments {
     group(ArgumentKind::Number, names, "scene units", meaning)
 }
 
-const fn angle(names: &'static [&'static str], meaning: &'static str) -> Arguments {
+pub(super) const fn angle(names: &'static [&'static str], meaning: &'static str) -> Arguments {
     group(ArgumentKind::Number, names, "radians", meaning)
 }
 
-const fn integer(names: &'static [&'static str], meaning: &'static str) -> Arguments {
+pub(super) const fn integer(names: &'static [&'static str], meaning: &'static str) -> Arguments {
     group(ArgumentKind::Integer, names, "", meaning)
 }
 
-const fn name(names: &'static [&'static str], meaning: &'static str) -> Arguments {
+pub(super) const fn name(names: &'static [&'static str], meaning: &'static str) -> Arguments {
     group(ArgumentKind::Name, names, "", meaning)
 }
 
-const RGB: Arguments = numbers(&["r", "g", "b"], "red, green, blue; 1 is full");
-const POSITION: Arguments = lengths(&["px", "py", "pz"], "where it stands");
-const CENTER: Arguments = lengths(&["cx", "cy", "cz"], "centre");
-const ATTENUATION: Arguments =
+pub(super) const RGB: Arguments = numbers(&["r", "g", "b"], "red, green, blue; 1 is full");
+pub(super) const POSITION: Arguments = lengths(&["px", "py", "pz"], "where it stands");
+pub(super) const CENTER: Arguments = lengths(&["cx", "cy", "cz"], "centre");
+pub(super) const ATTENUATION: Arguments =
     numbers(&["ca", "la", "qa"], "constant, linear and quadratic attenuation: 1 / (ca + la d + qa d²)");
-const MATERIAL: Arguments = integer(&["m"], "number of the material, from 0; -1 is the default material");
+pub(super) const MATERIAL: Arguments =
+    integer(&["m"], "number of the material, from 0; -1 is the default material");
 const COUNT: Arguments = integer(&["n"], "how many follow; only a hint");
 
 /// All directives, in the order of [`Directive`].

@@ -33,7 +33,7 @@ pub(super) fn shown(word: &[u8]) -> String {
 }
 
 /// "`#word` takes 3 arguments, but 1 is given"
-fn takes(word: &str, takes: &str, given: usize) -> String {
+pub(super) fn takes(word: &str, takes: &str, given: usize) -> String {
     let arguments = if takes == "1" { "argument" } else { "arguments" };
     let is = if given == 1 { "is" } else { "are" };
     format!("`{word}` takes {takes} {arguments}, but {given} {is} given")
@@ -46,7 +46,7 @@ impl Parser<'_> {
         let after_word = self.lexer.at();
         let (count, closed) = self.collect();
         let end = self.tokens.last().map_or(after_word, |token| token.end);
-        self.call = Call { spec, start, end, count, word: None };
+        self.call = Call { spec, start, end, count, word: None, skip: self.named.flag_tokens };
         if !closed {
             // The count would only be wrong because of what was left open.
             return false;
@@ -113,7 +113,8 @@ impl Parser<'_> {
                 Err(fault) => return self.no_number(token, name, fault),
             },
             ArgumentKind::Name => matches!(token.kind, TokenKind::Word | TokenKind::Quoted),
-            ArgumentKind::Text => token.kind == TokenKind::Text,
+            // Some courses' programs read one word here, whatever its signs.
+            ArgumentKind::Text => token.kind == TokenKind::Text || self.conventions.lenient,
         };
         if matches!(group.kind, ArgumentKind::Name | ArgumentKind::Text) {
             self.call.word = Some(token);
@@ -168,17 +169,20 @@ impl Parser<'_> {
         let word = spec.word;
         let at_word = self.span(start, after_word);
         if let [form] = spec.forms {
-            let error = if count < form.count {
-                missing(form, count, word).at(at_word)
-            } else {
-                self.surplus(form, at_word)
-            };
+            let error =
+                if count < form.count { self.missing(form, at_word) } else { self.surplus(form, at_word) };
             let error = error.note(usage(word, form));
-            let uva = spec.directive == Directive::Material && count == 19;
-            self.sink.error(match uva {
-                true => error
-                    .help("a material of 19 arguments belongs to the dialect `uva`; only `slides` is read"),
-                false => error,
+            let other = match (spec.directive, count) {
+                (Directive::Material, 19) => Some("`uva` and `jhu`"),
+                (Directive::Material, 17) => Some("`slides` and `unisa`"),
+                _other => None,
+            };
+            let read = self.dialect;
+            self.sink.error(match other {
+                Some(dialects) => error.help(format!(
+                    "a material of {count} arguments belongs to the dialects {dialects}; the file is read as `{read}`"
+                )),
+                None => error,
             });
         } else {
             let counts: Vec<String> = spec.forms.iter().map(|form| form.count.to_string()).collect();
@@ -246,7 +250,12 @@ impl Parser<'_> {
 
     /// Where the arguments `first .. first + count` of the directive at hand stand: lexed again, for only messages ask.
     pub(super) fn arguments_span(&self, first: usize, count: usize) -> Span {
-        arguments_span(self.bytes, self.call_span(), first, count)
+        arguments_span(self.bytes, self.call_span(), self.token_of(first), count)
+    }
+
+    /// Which token after the word argument `place` is.
+    pub(super) fn token_of(&self, place: usize) -> usize {
+        usize::try_from(place as i64 + i64::from(self.call.skip)).unwrap_or(0)
     }
 
     /// The number `place` of the directive at hand.
@@ -297,22 +306,8 @@ pub(super) fn arguments_span(bytes: &[u8], call: Span, first: usize, count: usiz
     Span::new(call.file, token.start, end)
 }
 
-fn takes_count(form: &Form) -> String {
+pub(super) fn takes_count(form: &Form) -> String {
     if form.count == 0 { "no".to_owned() } else { form.count.to_string() }
-}
-
-fn missing(form: &Form, count: usize, word: &str) -> Diagnostic {
-    let names: Vec<String> = form.each().skip(count).map(|(name, _)| format!("`{name}`")).collect();
-    let list = match names.as_slice() {
-        [one] => format!("{one} is missing"),
-        [first, .., last] if names.len() > 4 => {
-            format!("{} are missing, from {first} to {last}", names.len())
-        }
-        [all @ .., last] => format!("{} and {last} are missing", all.join(", ")),
-        [] => String::new(),
-    };
-    let message = format!("{}: {list}", takes(word, &takes_count(form), count));
-    Diagnostic::error("argument-count", message).label(list)
 }
 
 fn usage(word: &str, form: &Form) -> String {

@@ -3,14 +3,22 @@
 use super::Hint;
 use super::Parser;
 use crate::diagnostic::Diagnostic;
+use crate::dialect::Conventions;
+use crate::dialect::Dialect;
 use crate::model::Attenuation;
 use crate::model::Camera;
 use crate::model::Light;
 use crate::model::Placed;
+use crate::model::Tint;
 use crate::span::FileId;
 use dotray_geometry::Vec3;
 use std::f64::consts::FRAC_PI_2;
 use std::f64::consts::PI;
+
+/// How many arguments lights of one colour have.
+const POINT: usize = 9;
+const SPOT: usize = 14;
+const DIRECTIONAL: usize = 6;
 
 impl Parser<'_> {
     /// Camera, lights and colours of an included file do not count, so what is wrong with their values does
@@ -54,12 +62,18 @@ impl Parser<'_> {
     }
 
     pub(super) fn camera(&mut self) {
+        // Files that are only to be included have such a line in some courses.
+        if self.conventions.lenient && (0..10).all(|place| self.value(place) == 0.0) {
+            return;
+        }
         let direction = self.direction_at(3, "view direction");
         let up = self.direction_at(6, "up vector");
-        let half_angle = self.value(9);
-        let angle_fits = 0.0 < half_angle && half_angle < FRAC_PI_2;
+        let angle = self.value(9);
+        let half_angle = angle * self.conventions.half_angle;
+        let angle_fits =
+            0.0 < half_angle && half_angle < FRAC_PI_2 && angle < self.conventions.most_camera_angle;
         if !angle_fits {
-            self.wrong_half_angle(half_angle);
+            self.wrong_half_angle(angle);
         }
         let (Some(direction), Some(up)) = (direction, up) else { return };
         // The sine of the angle between them; below this the picture's right side is rounding noise.
@@ -78,6 +92,16 @@ impl Parser<'_> {
     }
 
     fn wrong_half_angle(&mut self, half_angle: f64) {
+        if self.dialect != Dialect::Slides {
+            let Conventions { camera_angle, most_camera_angle, .. } = *self.conventions;
+            let most = if most_camera_angle > 10.0 { "90 degrees" } else { "π" };
+            let message =
+                format!("the camera's {camera_angle} {half_angle} does not lie between 0 and {most}");
+            let error = Diagnostic::error("half-angle", message).at(self.arguments_span(9, 1));
+            let dialect = self.dialect;
+            self.view_error(error.label(format!("as the dialect `{dialect}` has it")));
+            return;
+        }
         let message = format!("the camera's half angle {half_angle} does not lie between 0 and π/2");
         let span = self.arguments_span(9, 1);
         let error = Diagnostic::error("half-angle", message).at(span);
@@ -129,7 +153,7 @@ impl Parser<'_> {
             None
         };
         if let Some(fault) = fault {
-            let (bytes, call) = (self.bytes, self.call_span());
+            let (bytes, call, first) = (self.bytes, self.call_span(), self.token_of(first));
             self.view_warning("attenuation", || {
                 Diagnostic::warning("attenuation", fault)
                     .at(super::arguments::arguments_span(bytes, call, first, 3))
@@ -140,6 +164,25 @@ impl Parser<'_> {
         Attenuation { constant, linear, quadratic }
     }
 
+    /// The light's colour, and the place of the argument after it. `plain` is the number of arguments of a light with
+    /// one colour; six more stand for its colours by kind of reflection.
+    fn light_color(&mut self, plain: usize) -> (Vec3, usize) {
+        if self.call.count == plain {
+            return (self.vector(0), 3);
+        }
+        let [ambient, diffuse, specular] = [0, 3, 6].map(|place| self.vector(place));
+        let color = ambient.max(diffuse).max(specular);
+        let part = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+        let parts = |v: Vec3| Vec3::new(part(v.x, color.x), part(v.y, color.y), part(v.z, color.z));
+        self.scene.tints.resize(self.scene.lights.len(), Tint::PLAIN);
+        self.scene.tints.push(Tint {
+            ambient: parts(ambient),
+            diffuse: parts(diffuse),
+            specular: parts(specular),
+        });
+        (color, 9)
+    }
+
     fn push_light(&mut self, value: Light) {
         let span = self.call_span();
         self.scene.lights.push(Placed { value, span });
@@ -147,31 +190,40 @@ impl Parser<'_> {
 
     pub(super) fn light_point(&mut self) {
         self.seen.lights += 1;
-        let attenuation = self.attenuation(6);
-        self.push_light(Light::Point { color: self.vector(0), position: self.vector(3), attenuation });
+        let (color, at) = self.light_color(POINT);
+        let attenuation = self.attenuation(at + 3);
+        self.push_light(Light::Point { color, position: self.vector(at), attenuation });
     }
 
     pub(super) fn light_spot(&mut self) {
         self.seen.lights += 1;
-        let direction = self.direction_at(6, "axis");
-        let attenuation = self.attenuation(9);
-        let (cutoff, dropoff) = (self.value(12), self.value(13));
+        let (color, at) = self.light_color(SPOT);
+        let direction = self.direction_at(at + 3, "axis");
+        let attenuation = self.attenuation(at + 6);
+        let cutoff = self.value(at + 9) * self.conventions.spot_angle;
+        // Dividing by a power of two rounds nothing.
+        let dropoff = self.value(at + 10) * (self.conventions.dropoff / 128.0);
         if !(0.0..=PI).contains(&cutoff) {
-            self.odd_cutoff(cutoff);
+            self.odd_cutoff(at + 9);
         }
         if let Some(direction) = direction {
-            let (color, position) = (self.vector(0), self.vector(3));
+            let position = self.vector(at);
             self.push_light(Light::Spot { color, position, direction, attenuation, cutoff, dropoff });
         }
     }
 
-    fn odd_cutoff(&mut self, cutoff: f64) {
-        let (bytes, call) = (self.bytes, self.call_span());
+    fn odd_cutoff(&mut self, place: usize) {
+        let (bytes, call, token, cutoff) =
+            (self.bytes, self.call_span(), self.token_of(place), self.value(place));
+        let degrees = self.conventions.spot_angle != 1.0;
         self.view_warning("spot-angle", || {
-            let message = format!("the spot's cut-off angle {cutoff} does not lie between 0 and π");
-            let span = super::arguments::arguments_span(bytes, call, 12, 1);
+            let most = if degrees { "180 degrees" } else { "π" };
+            let message = format!("the spot's cut-off angle {cutoff} does not lie between 0 and {most}");
+            let span = super::arguments::arguments_span(bytes, call, token, 1);
             let warning = Diagnostic::warning("spot-angle", message).at(span);
-            if cutoff > 0.0 {
+            if cutoff > 0.0 && degrees {
+                warning.label("the lamp shines to all sides")
+            } else if cutoff > 0.0 {
                 let radians = cutoff * PI / 180.0;
                 let help = format!("the angle is in radians: {cutoff} degrees are {radians:.4}");
                 warning.label("looks like degrees").help(help)
@@ -183,8 +235,9 @@ impl Parser<'_> {
 
     pub(super) fn light_directional(&mut self) {
         self.seen.lights += 1;
-        if let Some(direction) = self.direction_at(3, "direction") {
-            self.push_light(Light::Directional { color: self.vector(0), direction });
+        let (color, at) = self.light_color(DIRECTIONAL);
+        if let Some(direction) = self.direction_at(at, "direction") {
+            self.push_light(Light::Directional { color, direction });
         }
     }
 

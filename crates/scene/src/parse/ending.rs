@@ -6,8 +6,13 @@ use super::arguments::arguments_span;
 use super::shapes::left_out;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Sink;
+use crate::dialect::Dialect;
+use crate::directive;
 use crate::directive::Directive;
+use crate::lex::Lexer;
+use crate::lex::TokenKind;
 use crate::model::Item;
+use crate::model::Placed;
 use crate::model::ShapeKind;
 use crate::model::ShapeList;
 use crate::model::Vertex;
@@ -19,7 +24,9 @@ use dotray_geometry::Triangle;
 
 impl Parser<'_> {
     pub(super) fn finish(&mut self) {
+        self.finish_affines();
         self.unclosed_groups();
+        self.finish_names();
         self.check_hints();
         self.check_textures();
         self.check_materials();
@@ -53,14 +60,14 @@ impl Parser<'_> {
 
     fn check_hints(&mut self) {
         let kinds = [
-            (Directive::LightNum, self.seen.lights, "lights"),
-            (Directive::TextureNum, self.seen.textures, "textures"),
-            (Directive::MaterialNum, self.seen.materials, "materials"),
-            (Directive::VertexNum, self.seen.vertices, "vertices"),
-            (Directive::RayFileNum, self.seen.includes, "included files"),
+            (Directive::LightNum, self.seen.lights, "light", "lights"),
+            (Directive::TextureNum, self.seen.textures, "texture", "textures"),
+            (Directive::MaterialNum, self.seen.materials, "material", "materials"),
+            (Directive::VertexNum, self.seen.vertices, "vertex", "vertices"),
+            (Directive::RayFileNum, self.seen.includes, "included file", "included files"),
         ];
-        for (directive, found, whats) in kinds {
-            let mut hints = self.hints.iter().filter(|hint| hint.directive == directive).peekable();
+        for (kind, found, one, many) in kinds {
+            let mut hints = self.hints.iter().filter(|hint| hint.directive == kind).peekable();
             let Some(&&Hint { span, .. }) = hints.peek() else { continue };
             // Files put together from parts have one hint a part.
             let hinted: f64 = hints.map(|hint| hint.count).sum();
@@ -68,29 +75,43 @@ impl Parser<'_> {
                 continue;
             }
             let span = arguments_span(self.bytes, span, 0, 1);
+            let (word, whats) = (directive::spec(kind).word, if found == 1 { one } else { many });
             self.sink.warn("count-hint", || {
-                let message = format!("{hinted} {whats} are announced, but the file has {found}");
+                let message = format!("`{word}` announces {hinted}, but the file has {found} {whats}");
                 Diagnostic::warning("count-hint", message)
                     .at(span)
                     .label(format!("the {found} of the file count"))
+                    .help(format!("`{word} {found}` says what the file has"))
             });
         }
     }
 
     fn check_textures(&mut self) {
         let found = self.seen.textures;
+        let place = match self.dialect {
+            Dialect::Uva | Dialect::Jhu => 17,
+            Dialect::Slides | Dialect::Hmc | Dialect::Unisa => 15,
+        };
         for material in &self.scene.materials {
             if material.value.texture.is_some_and(|number| number as usize >= found) {
-                let span = arguments_span(self.bytes, material.span, 15, 1);
+                let span = arguments_span(self.bytes, material.span, place, 1);
                 let number = material.value.texture.unwrap_or_default();
-                self.sink.error(names_nothing("unknown-texture", "texture", number, found).at(span));
+                self.sink.error(declared(
+                    names_nothing("unknown-texture", "texture", number, found).at(span),
+                    self.scene.textures.last(),
+                ));
             }
         }
     }
 
     fn check_materials(&mut self) {
         let found = self.seen.materials;
-        let check = MaterialCheck { bytes: self.bytes, file: self.file, found };
+        let check = MaterialCheck {
+            bytes: self.bytes,
+            file: self.file,
+            found,
+            last: self.scene.materials.last().map(|placed| placed.span),
+        };
         let scene = &self.scene;
         let sink = &mut *self.sink;
         check.list(&scene.spheres, sink);
@@ -99,13 +120,16 @@ impl Parser<'_> {
         check.list(&scene.cones, sink);
         check.list(&scene.triangles, sink);
         check.list(&scene.indexed_triangles, sink);
+        check.list(&scene.tori, sink);
+        check.list(&scene.open_sides, sink);
     }
 
     fn check_instances(&mut self) {
         let found = self.seen.includes;
         for &(number, span) in &self.instances {
             if number as usize >= found {
-                self.sink.error(names_nothing("unknown-include", "included file", number, found).at(span));
+                let error = names_nothing("unknown-include", "included file", number, found).at(span);
+                self.sink.error(declared(error, self.scene.includes.last()));
             }
         }
     }
@@ -119,6 +143,9 @@ impl Parser<'_> {
             }
             for (place, &corner) in (1..).zip(corners) {
                 if corner as usize >= found {
+                    let start = list.starts.get(entry).unwrap_or(0);
+                    let place =
+                        place - usize::from(self.dialect == Dialect::Jhu && is_listed(self.bytes, start));
                     let span = argument_of_shape(self.bytes, self.file, &list.starts, entry, place);
                     self.sink.error(names_nothing("unknown-vertex", "vertex", corner, found).at(span));
                 }
@@ -188,6 +215,7 @@ struct MaterialCheck<'a> {
     bytes: &'a [u8],
     file: FileId,
     found: usize,
+    last: Option<Span>,
 }
 
 impl MaterialCheck<'_> {
@@ -202,7 +230,11 @@ impl MaterialCheck<'_> {
                 return;
             }
             let span = argument_of_shape(self.bytes, self.file, &list.starts, entry, 0);
-            sink.error(names_nothing("unknown-material", "material", number as u32, self.found).at(span));
+            let error = names_nothing("unknown-material", "material", number as u32, self.found).at(span);
+            sink.error(match self.last {
+                Some(last) => error.note_at(last, "the last one is declared here"),
+                None => error,
+            });
         }
     }
 }
@@ -214,6 +246,21 @@ fn names_nothing(code: &'static str, what: &str, number: u32, found: usize) -> D
         _ => format!("the file has {found}, numbered 0 to {}", found - 1),
     };
     Diagnostic::error(code, format!("{what} {number} does not exist")).label(label)
+}
+
+/// Whether the triangle at `start` has three arguments, its material being its list's.
+fn is_listed(bytes: &[u8], start: u64) -> bool {
+    let mut lexer = Lexer::from(bytes, usize::try_from(start).unwrap_or(usize::MAX));
+    let words = std::iter::from_fn(|| lexer.token().ok().flatten());
+    words.skip(1).take_while(|token| token.kind == TokenKind::Word).take(4).count() == 3
+}
+
+/// Says where the list ends that a number goes beyond.
+fn declared<T>(error: Diagnostic, last: Option<&Placed<T>>) -> Diagnostic {
+    match last {
+        Some(last) => error.note_at(last.span, "the last one is declared here"),
+        None => error,
+    }
 }
 
 fn shape_span(bytes: &[u8], file: FileId, start: u64) -> Span {

@@ -11,13 +11,17 @@ use dotray_geometry::Transform;
 use dotray_geometry::Vec3;
 
 /// A matrix row by row, as written.
-type Rows = [f64; 16];
+pub(super) type Rows = [f64; 16];
 
 const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 const ORDINAL: [&str; 4] = ["first", "second", "third", "last"];
 
 impl Parser<'_> {
     pub(super) fn group_begin(&mut self) {
+        if self.call.count == 0 {
+            // `hmc`: the directives that follow say where the group stands.
+            return self.open_group(Placed { value: Mat4::IDENTITY, span: self.call_span() });
+        }
         let rows = self.rows();
         if let Some(fault) = fault_of(&rows) {
             self.wrong_matrix(&rows, fault);
@@ -43,7 +47,7 @@ impl Parser<'_> {
         self.sink.error(error.at(span).label("no `#group_begin` belongs to it"));
     }
 
-    fn rows(&self) -> Rows {
+    pub(super) fn rows(&self) -> Rows {
         let mut rows = [0.0; 16];
         for (row, value) in rows.iter_mut().zip(&self.values) {
             *row = *value;
@@ -84,7 +88,7 @@ fn plain(shown: &str) -> String {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Fault {
+pub(super) enum Fault {
     LastRow,
     /// The row that makes it so.
     Singular(usize),
@@ -100,7 +104,7 @@ fn is_zero(rows: &Rows, row: usize) -> bool {
     row3(rows, row) == Vec3::ZERO
 }
 
-fn fault_of(rows: &Rows) -> Option<Fault> {
+pub(super) fn fault_of(rows: &Rows) -> Option<Fault> {
     if !rows.ends_with(&LAST_ROW) {
         return Some(Fault::LastRow);
     }

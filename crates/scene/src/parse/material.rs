@@ -11,9 +11,12 @@ use crate::model::Vertex;
 use dotray_geometry::Vec2;
 use dotray_geometry::Vec3;
 
+/// How many arguments a material of the dialects `uva` and `jhu` has.
+const MATERIAL_OF_UVA: usize = 19;
+
 impl Parser<'_> {
     /// The name or text argument of the directive at hand. Bytes that are no UTF-8 become U+FFFD.
-    fn word(&self) -> String {
+    pub(super) fn word(&self) -> String {
         let inner = self.call.word.map(|token| self.lexer.inner(token)).unwrap_or_default();
         String::from_utf8_lossy(inner).into_owned()
     }
@@ -26,6 +29,9 @@ impl Parser<'_> {
 
     pub(super) fn material(&mut self) {
         self.seen.materials += 1;
+        if self.call.count == MATERIAL_OF_UVA {
+            return self.material_of_uva();
+        }
         let texture = match self.whole(15) {
             Some(-1) => None,
             Some(number) => match u32::try_from(number) {
@@ -36,6 +42,10 @@ impl Parser<'_> {
         };
         let &[ar, ag, ab, dr, dg, db, sr, sg, sb, er, eg, eb, k_specular, k_transmission, ir, ..] =
             &self.values;
+        let ir = match self.conventions.lenient {
+            true => self.lenient_index(k_transmission > 0.0, ir, 14),
+            false => ir,
+        };
         if k_transmission > 0.0 && ir <= 0.0 {
             let message = format!(
                 "the material transmits light (kt is {k_transmission}), but its index of refraction is {ir}"
@@ -53,6 +63,7 @@ impl Parser<'_> {
             index_of_refraction: ir,
             texture,
             text: self.word(),
+            weights: None,
         };
         let span = self.call_span();
         self.scene.materials.push(Placed { value, span });

@@ -43,6 +43,9 @@ impl Parser<'_> {
     }
 
     pub(super) fn triangle(&mut self) {
+        if self.call.count == 3 {
+            return self.listed_triangle();
+        }
         if self.call.count == 4 {
             return self.indexed_triangle();
         }
@@ -81,7 +84,7 @@ impl Parser<'_> {
     }
 
     /// Whether its vertices exist and span an area is asked at the end of the file, for they may follow.
-    fn indexed_triangle(&mut self) {
+    pub(super) fn indexed_triangle(&mut self) {
         let mut corners = [0; 3];
         for (place, corner) in (1..).zip(&mut corners) {
             let Some(number) = self.whole(place) else { return };
@@ -95,7 +98,7 @@ impl Parser<'_> {
 
     /// Takes a shape into its list and into the tree; one of no extent is left out with a warning.
     #[inline]
-    fn shape<T>(
+    pub(super) fn shape<T>(
         &mut self,
         shape: Result<T, ShapeError>,
         kind: ShapeKind,
@@ -129,11 +132,17 @@ impl Parser<'_> {
     fn material_number(&mut self) -> Option<i32> {
         let value = self.value(0);
         let number = value as i32;
-        if f64::from(number) == value && number >= -1 {
+        if f64::from(number) == value && number >= self.least_material() {
             return Some(number);
         }
         self.wrong_material();
         None
+    }
+
+    /// -1 where the dialect has a default material.
+    #[inline]
+    fn least_material(&self) -> i32 {
+        if self.conventions.default_material { -1 } else { 0 }
     }
 
     #[cold]
@@ -145,16 +154,17 @@ impl Parser<'_> {
 
     #[cold]
     fn degenerate(&mut self, fault: ShapeError) {
-        let (bytes, call, word, count) = (self.bytes, self.call_span(), self.call.spec.word, self.call.count);
+        let (bytes, call, word) = (self.bytes, self.call_span(), self.call.spec.word);
+        let skip = self.token_of(0);
         let edge = self.values.iter().skip(4).position(|&edge| edge <= 0.0).unwrap_or(0);
         self.sink.warn("degenerate-shape", || {
             let place = match fault {
                 ShapeError::Radius => Some(4),
-                ShapeError::Height => Some(count.saturating_sub(1)),
+                ShapeError::Height => Some(5),
                 ShapeError::Edge => Some(4 + edge),
                 ShapeError::NotFinite | ShapeError::Area => None,
             };
-            let span = place.map_or(call, |place| arguments::arguments_span(bytes, call, place, 1));
+            let span = place.map_or(call, |place| arguments::arguments_span(bytes, call, place + skip, 1));
             left_out(word, fault).at(span).label("is left out")
         });
     }

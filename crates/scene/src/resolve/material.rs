@@ -2,10 +2,13 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Sink;
+use crate::dialect::Conventions;
+use crate::dialect::Dialect;
 use crate::model::Material;
 use crate::model::Placed;
 use crate::model::SceneFile;
 use crate::model::ShapeKind;
+use crate::model::Weights;
 use crate::number::General;
 use crate::procedural::Procedural;
 use crate::procedural::parse_clauses;
@@ -32,24 +35,37 @@ pub fn resolve(files: &[SceneFile], sink: &mut Sink) -> Materials {
     for file in files {
         let texture_base = all.textures.len() as u32;
         all.bases.push(all.materials.len() as u32);
-        let textures = file.textures.iter().map(|placed| resolve_texture(&file.path, placed));
+        let textures =
+            file.textures.iter().map(|placed| resolve_texture_of(&file.path, file.dialect, placed));
         all.textures.extend(textures);
         for placed in &file.materials {
             let texture = check_texture(placed, file.textures.len(), sink).map(|tn| texture_base + tn);
-            all.materials.push(resolve_material(placed, texture, sink));
+            all.materials.push(resolve_material(placed, texture, file.dialect.conventions(), sink));
         }
     }
     all.materials.push(default_material());
     all
 }
 
-fn resolve_texture(scene_path: &Path, placed: &Placed<String>) -> ResolvedTexture {
+/// Where the image of a `#texture` of the file at `scene_path` may lie: beside that file, else in the working
+/// directory.
+pub fn resolve_texture(scene_path: &Path, placed: &Placed<String>) -> ResolvedTexture {
+    resolve_texture_of(scene_path, Dialect::Slides, placed)
+}
+
+/// The same for a file of any dialect: courses' programs ran in a folder above that of their scenes.
+fn resolve_texture_of(scene_path: &Path, dialect: Dialect, placed: &Placed<String>) -> ResolvedTexture {
+    const ABOVE: usize = 3;
     let name = &placed.value;
     // Course files written on Windows separate folders by a backslash.
     let names = [name.clone(), name.replace('\\', "/")];
     let folder = scene_path.parent().unwrap_or(Path::new(""));
+    let above = if dialect.conventions().lenient { ABOVE } else { 0 };
     let mut candidates: Vec<PathBuf> = Vec::new();
-    for candidate in names.iter().flat_map(|name| [folder.join(name), PathBuf::from(name)]) {
+    let usual = names.iter().flat_map(|name| [folder.join(name), PathBuf::from(name)]);
+    let further = folder.ancestors().skip(1).take(above);
+    let further = further.flat_map(|folder| names.iter().map(move |name| folder.join(name)));
+    for candidate in usual.chain(further) {
         if !candidates.contains(&candidate) {
             candidates.push(candidate);
         }
@@ -68,7 +84,12 @@ fn check_texture(placed: &Placed<Material>, count: usize, sink: &mut Sink) -> Op
     Some(texture)
 }
 
-fn resolve_material(placed: &Placed<Material>, texture: Option<u32>, sink: &mut Sink) -> ResolvedMaterial {
+fn resolve_material(
+    placed: &Placed<Material>,
+    texture: Option<u32>,
+    conventions: &Conventions,
+    sink: &mut Sink,
+) -> ResolvedMaterial {
     let Placed { value: material, span } = placed;
     let Material { k_specular, k_transmission, index_of_refraction, .. } = *material;
     for (name, value) in [("ks", k_specular), ("kt", k_transmission)] {
@@ -90,15 +111,23 @@ fn resolve_material(placed: &Placed<Material>, texture: Option<u32>, sink: &mut 
             Diagnostic::warning("material-text", message).at(*span).label("in the text of this material")
         });
     }
+    let Weights { shininess, reflection, transmission } = material.weights.unwrap_or(Weights {
+        shininess: 128.0 * k_specular,
+        reflection: k_specular * material.specular,
+        transmission: k_transmission * material.specular,
+    });
+    let transmission = finite(transmission);
     ResolvedMaterial {
         ambient: material.ambient,
         diffuse: material.diffuse,
         specular: material.specular,
         emissive: material.emissive,
         // A negative exponent would make the highlight infinite where the cosine is 0.
-        shininess: (128.0 * k_specular).clamp(0.0, f64::MAX),
-        reflection: finite(k_specular * material.specular),
-        transmission: finite(k_transmission * material.specular),
+        shininess: shininess.clamp(0.0, f64::MAX),
+        reflection: finite(reflection),
+        transmission,
+        shadow: if conventions.see_through_shadows { transmission } else { Vec3::ZERO },
+        texture_on_all_light: conventions.texture_on_all_light,
         index_of_refraction,
         texture,
         procedural,
@@ -121,6 +150,8 @@ fn default_material() -> ResolvedMaterial {
         shininess: 128.0,
         reflection: specular,
         transmission: Vec3::ZERO,
+        shadow: Vec3::ZERO,
+        texture_on_all_light: false,
         index_of_refraction: 1.0,
         texture: None,
         procedural: Procedural::default(),

@@ -72,6 +72,7 @@ impl Build {
             index_of_refraction: 1.0,
             texture: None,
             text: String::new(),
+            weights: None,
         };
         change(&mut value);
         let span = self.span();

@@ -40,7 +40,7 @@ fn summary() -> Summary {
 fn everything_is_counted() {
     let summary = summary();
     let shapes =
-        ShapeCounts { spheres: 1, boxes: 0, cylinders: 1, cones: 2, triangles: 0, indexed_triangles: 2 };
+        ShapeCounts { spheres: 1, cylinders: 1, cones: 2, indexed_triangles: 2, ..ShapeCounts::default() };
     assert_eq!(summary.shapes, shapes);
     assert_eq!(summary.shapes.total(), 6);
     assert_eq!((summary.groups, summary.instances, summary.max_depth), (3, 2, 3));
