@@ -22,7 +22,43 @@ pub struct Surface {
     /// geometric one.
     pub shading_normal: Vec3,
     /// (s, t) of SPEC 7.
-    pub texcoord: Vec2,
+    pub texcoord: Texcoord,
+}
+
+/// Texture coordinates, not worked out before somebody asks: few surfaces have a picture on them, and arc functions
+/// cost more than the rest of a hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Texcoord {
+    /// They are known.
+    Known(Vec2),
+    /// s turns about the y axis with this direction (x, z); t is known.
+    Around {
+        /// From the axis to the point.
+        radial: Vec2,
+        /// t
+        t: f64,
+    },
+    /// Those of the point of a sphere with this unit normal.
+    OnSphere(Vec3),
+}
+
+impl Texcoord {
+    /// (s, t)
+    pub fn get(self) -> Vec2 {
+        match self {
+            Self::Known(texcoord) => texcoord,
+            Self::Around { radial, t } => Vec2::new(side_turn(radial.x, radial.y), t),
+            Self::OnSphere(normal) => {
+                let down = libm::acos(normal.y.clamp(-1.0, 1.0)) / std::f64::consts::PI;
+                Vec2::new(side_turn(normal.x, normal.z), down)
+            }
+        }
+    }
+}
+
+/// Texture coordinate s around the y axis: 0 and 1 at −z, ½ at +z.
+fn side_turn(x: f64, z: f64) -> f64 {
+    libm::atan2(x, z) / (2.0 * std::f64::consts::PI) + 0.5
 }
 
 /// The surface points that one ray meets on one shape, in ascending order of t (which may be negative):

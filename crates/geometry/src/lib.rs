@@ -17,7 +17,7 @@ pub mod roots;
 pub mod shape;
 
 pub use aabb::Aabb;
-pub use hit::{Crossings, Hit, Surface};
+pub use hit::{Crossings, Hit, Surface, Texcoord};
 pub use ray::Ray;
 pub use shape::{
     Cone, Cuboid, Cylinder, OpenSide, OrientedCone, OrientedCylinder, Shape, ShapeError, Sphere, Torus,

@@ -120,7 +120,7 @@ impl Layer {
             Self::Shape => samples.push(met.map_or(-1.0, |met| met.nearest.number as f32)),
             Self::Material => samples.push(met.map_or(-1.0, |met| met.material as f32)),
             Self::St => {
-                let st = met.map_or([0.0; 2], |met| met.surface.in_object.texcoord.to_array());
+                let st = met.map_or([0.0; 2], |met| met.surface.in_object.texcoord.get().to_array());
                 samples.extend(st.map(|x| x as f32));
             }
             Self::Object => vector(samples, of_point(|met| met.surface.in_object.point)),

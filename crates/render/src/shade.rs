@@ -56,7 +56,7 @@ impl<'a> ShadePoint<'a> {
             world.caster.shapes.world_normal(nearest.position, leaned)
         };
         let image = material.texture.and_then(|number| world.textures.get(number as usize));
-        let texture = image.map_or(Vec3::ONE, |image| image.color(surface.in_object.texcoord, filter))
+        let texture = image.map_or(Vec3::ONE, |image| image.color(surface.in_object.texcoord.get(), filter))
             * solid::color(&procedural.solids, surface.in_object.point);
         let direction = ray.direction;
         let entering = direction.dot(surface.geometric_normal) <= 0.0;

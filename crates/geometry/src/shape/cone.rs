@@ -7,13 +7,13 @@ use super::round::SIDE;
 use super::round::along_and_across;
 use super::round::bottom_texcoord;
 use super::round::disc_bounds;
-use super::round::side_turn;
 use super::round::within_disc;
 use crate::aabb::Aabb;
 use crate::aabb::image_magnitude;
 use crate::hit::Crossings;
 use crate::hit::Hit;
 use crate::hit::Surface;
+use crate::hit::Texcoord;
 use crate::ray::Ray;
 use crate::roots::from_discriminant;
 use crate::vector::{Affine, Vec2, Vec3};
@@ -92,7 +92,7 @@ impl Cone {
                 let fraction = fraction.clamp(0.0, 1.0);
                 let outward = radial.normalize_or_zero();
                 let normal = side_normal(Vec3::new(outward.x, 0.0, outward.y), Vec3::Y, r, h);
-                let texcoord = Vec2::new(side_turn(radial.x, radial.y), fraction);
+                let texcoord = Texcoord::Around { radial, t: fraction };
                 (outward * (r * fraction), half - h * fraction, normal, texcoord)
             }
         };
@@ -359,12 +359,12 @@ mod tests {
         let right = surface([9.0, 1.0, 3.0], [-1.0, 0.0, 0.0]);
         assert_eq!(right.point, Vec3::new(2.5, 1.0, 3.0));
         assert!((right.geometric_normal - Vec3::new(2.0, 1.0, 0.0) / 5f64.sqrt()).length() < 1e-15);
-        assert_eq!(right.texcoord, Vec2::new(0.75, 0.75));
+        assert_eq!(right.texcoord.get(), Vec2::new(0.75, 0.75));
         let base = surface([2.0, -9.0, 2.0], [0.0, 1.0, 0.0]);
         assert_eq!((base.point, base.geometric_normal), (Vec3::new(2.0, 0.0, 2.0), Vec3::NEG_Y));
-        assert_eq!(base.texcoord, Vec2::new(0.75, 0.75));
+        assert_eq!(base.texcoord.get(), Vec2::new(0.75, 0.75));
         let apex = surface([1.0, 9.0, 3.0], [0.0, -1.0, 0.0]);
         assert_eq!((apex.point, apex.geometric_normal), (Vec3::new(1.0, 4.0, 3.0), Vec3::Y));
-        assert_eq!(apex.texcoord, Vec2::new(0.5, 0.0));
+        assert_eq!(apex.texcoord.get(), Vec2::new(0.5, 0.0));
     }
 }

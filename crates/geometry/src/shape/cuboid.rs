@@ -5,6 +5,7 @@ use crate::aabb::Aabb;
 use crate::hit::Crossings;
 use crate::hit::Hit;
 use crate::hit::Surface;
+use crate::hit::Texcoord;
 use crate::ray::Ray;
 use crate::vector::{Affine, Vec2, Vec3};
 
@@ -111,7 +112,12 @@ impl Cuboid {
             4 => Vec2::new(down.x, down.y),
             _front => Vec2::new(up.x, down.y),
         };
-        Surface { point, geometric_normal: normal, shading_normal: normal, texcoord }
+        Surface {
+            point,
+            geometric_normal: normal,
+            shading_normal: normal,
+            texcoord: Texcoord::Known(texcoord),
+        }
     }
 
     /// See [`super::Shape::bounds`].
@@ -199,7 +205,7 @@ mod tests {
         for (normal, texcoord) in expected {
             let ray = Ray::new(inner + normal * 20.0, -normal);
             let surface = cuboid.surface(&ray, cuboid.crossings(&ray).as_slice()[0]);
-            assert_eq!((surface.geometric_normal, surface.texcoord), (normal, texcoord));
+            assert_eq!((surface.geometric_normal, surface.texcoord.get()), (normal, texcoord));
             let offset = (surface.point - Vec3::new(1.0, 2.0, 3.0)) * normal;
             assert_eq!(offset.element_sum(), (Vec3::new(1.0, 2.0, 4.0) * normal.abs()).element_sum());
         }

@@ -7,13 +7,13 @@ use super::round::TOP;
 use super::round::along_and_across;
 use super::round::bottom_texcoord;
 use super::round::disc_bounds;
-use super::round::side_turn;
 use super::round::top_texcoord;
 use super::round::within_disc;
 use crate::aabb::Aabb;
 use crate::hit::Crossings;
 use crate::hit::Hit;
 use crate::hit::Surface;
+use crate::hit::Texcoord;
 use crate::ray::Ray;
 use crate::vector::{Affine, Vec2, Vec3};
 
@@ -91,7 +91,7 @@ impl Cylinder {
             _side => {
                 let outward = radial.normalize_or(Vec2::X);
                 let y = p.y.clamp(-half, half);
-                let texcoord = Vec2::new(side_turn(radial.x, radial.y), (half - y) / self.height);
+                let texcoord = Texcoord::Around { radial, t: (half - y) / self.height };
                 (outward * self.radius, y, Vec3::new(outward.x, 0.0, outward.y), texcoord)
             }
         };
@@ -273,12 +273,12 @@ mod tests {
         };
         let right = surface([9.0, 3.5, 3.0], [-1.0, 0.0, 0.0]);
         assert_eq!((right.point, right.geometric_normal), (Vec3::new(3.0, 3.5, 3.0), Vec3::X));
-        assert_eq!(right.texcoord, Vec2::new(0.75, 0.25));
+        assert_eq!(right.texcoord.get(), Vec2::new(0.75, 0.25));
         let top = surface([2.0, 9.0, 2.0], [0.0, -1.0, 0.0]);
         assert_eq!((top.point, top.geometric_normal), (Vec3::new(2.0, 5.0, 2.0), Vec3::Y));
-        assert_eq!(top.texcoord, Vec2::new(0.75, 0.25));
+        assert_eq!(top.texcoord.get(), Vec2::new(0.75, 0.25));
         let bottom = surface([2.0, -9.0, 2.0], [0.0, 1.0, 0.0]);
         assert_eq!((bottom.point, bottom.geometric_normal), (Vec3::new(2.0, -1.0, 2.0), Vec3::NEG_Y));
-        assert_eq!(bottom.texcoord, Vec2::new(0.75, 0.75));
+        assert_eq!(bottom.texcoord.get(), Vec2::new(0.75, 0.75));
     }
 }

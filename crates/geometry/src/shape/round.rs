@@ -4,6 +4,7 @@ use crate::aabb::Aabb;
 use crate::aabb::image_magnitude;
 use crate::hit::Crossings;
 use crate::hit::Hit;
+use crate::hit::Texcoord;
 use crate::vector::{Affine, Vec2, Vec3};
 
 /// The face number of the curved side.
@@ -53,22 +54,16 @@ impl Interval {
     }
 }
 
-/// Texture coordinate s around the y axis: 0 and 1 at −z, ½ at +z.
-#[inline]
-pub(super) fn side_turn(x: f64, z: f64) -> f64 {
-    libm::atan2(x, z) / (2.0 * std::f64::consts::PI) + 0.5
-}
-
 /// Texture coordinates of the upper disc; `radial` is (x, z) relative to its centre.
 #[inline]
-pub(super) fn top_texcoord(radial: Vec2, radius: f64) -> Vec2 {
-    Vec2::new((radial.x / radius + 1.0) / 2.0, (radial.y / radius + 1.0) / 2.0)
+pub(super) fn top_texcoord(radial: Vec2, radius: f64) -> Texcoord {
+    Texcoord::Known(Vec2::new((radial.x / radius + 1.0) / 2.0, (radial.y / radius + 1.0) / 2.0))
 }
 
 /// Texture coordinates of the lower disc, seen from below; `radial` is (x, z) relative to its centre.
 #[inline]
-pub(super) fn bottom_texcoord(radial: Vec2, radius: f64) -> Vec2 {
-    Vec2::new((radial.x / radius + 1.0) / 2.0, (1.0 - radial.y / radius) / 2.0)
+pub(super) fn bottom_texcoord(radial: Vec2, radius: f64) -> Texcoord {
+    Texcoord::Known(Vec2::new((radial.x / radius + 1.0) / 2.0, (1.0 - radial.y / radius) / 2.0))
 }
 
 /// The nearest point of the disc about 0, for a point that rounding may have put beside it.

@@ -1,14 +1,14 @@
 //! The sphere.
 
 use super::ShapeError;
-use super::round::side_turn;
 use crate::aabb::Aabb;
 use crate::aabb::image_magnitude;
 use crate::hit::Crossings;
 use crate::hit::Hit;
 use crate::hit::Surface;
+use crate::hit::Texcoord;
 use crate::ray::Ray;
-use crate::vector::{Affine, Vec2, Vec3};
+use crate::vector::{Affine, Vec3};
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,12 +69,11 @@ impl Sphere {
     /// See [`super::Shape::surface`].
     pub fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
         let normal = (ray.at(hit.t) - self.center).normalize_or(Vec3::Y);
-        let down = libm::acos(normal.y.clamp(-1.0, 1.0)) / std::f64::consts::PI;
         Surface {
             point: self.center + normal * self.radius,
             geometric_normal: normal,
             shading_normal: normal,
-            texcoord: Vec2::new(side_turn(normal.x, normal.z), down),
+            texcoord: Texcoord::OnSphere(normal),
         }
     }
 
@@ -154,10 +153,10 @@ mod tests {
         };
         let front = seen_along(Vec3::NEG_Z);
         assert_eq!((front.point, front.geometric_normal), (Vec3::new(0.0, 1.0, 2.0), Vec3::Z));
-        assert_eq!(front.texcoord, Vec2::new(0.5, 0.5));
-        assert_eq!(seen_along(Vec3::NEG_X).texcoord, Vec2::new(0.75, 0.5));
-        assert_eq!(seen_along(Vec3::NEG_Y).texcoord.y, 0.0);
-        assert_eq!(seen_along(Vec3::Y).texcoord.y, 1.0);
+        assert_eq!(front.texcoord.get(), Vec2::new(0.5, 0.5));
+        assert_eq!(seen_along(Vec3::NEG_X).texcoord.get(), Vec2::new(0.75, 0.5));
+        assert_eq!(seen_along(Vec3::NEG_Y).texcoord.get().y, 0.0);
+        assert_eq!(seen_along(Vec3::Y).texcoord.get().y, 1.0);
     }
 
     #[test]

@@ -2,12 +2,12 @@
 
 use super::ShapeError;
 use super::round::SIDE;
-use super::round::side_turn;
 use crate::aabb::Aabb;
 use crate::aabb::image_magnitude;
 use crate::hit::Crossings;
 use crate::hit::Hit;
 use crate::hit::Surface;
+use crate::hit::Texcoord;
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::roots::quartic_turns;
@@ -96,7 +96,7 @@ impl Torus {
         let out = if of_lens { -across } else { across };
         let normal = Vec3::new(outward.x * out.x, out.y, outward.y * out.x);
         let turn = 0.5 - libm::atan2(near.y, near.x) / (2.0 * PI);
-        let texcoord = Vec2::new(side_turn(radial.x, radial.y), turn);
+        let texcoord = Texcoord::Around { radial, t: turn };
         Surface { point, geometric_normal: normal, shading_normal: normal, texcoord }
     }
 
@@ -290,14 +290,14 @@ mod tests {
         };
         let outer = surface([9.0, 2.0, 3.0], [-1.0, 0.0, 0.0], 0);
         assert_eq!((outer.point, outer.geometric_normal), (Vec3::new(5.0, 2.0, 3.0), Vec3::X));
-        assert_eq!(outer.texcoord, Vec2::new(0.75, 0.5));
+        assert_eq!(outer.texcoord.get(), Vec2::new(0.75, 0.5));
         let inner = surface([9.0, 2.0, 3.0], [-1.0, 0.0, 0.0], 1);
         assert!((inner.point - Vec3::new(3.0, 2.0, 3.0)).length() < 1e-14);
         assert!((inner.geometric_normal - Vec3::NEG_X).length() < 1e-14);
         let top = surface([1.0, 9.0, 6.0], [0.0, -1.0, 0.0], 0);
         assert!((top.point - Vec3::new(1.0, 3.0, 6.0)).length() < 1e-14);
         assert!((top.geometric_normal - Vec3::Y).length() < 1e-14);
-        assert!((top.texcoord - Vec2::new(0.5, 0.25)).length() < 1e-14);
+        assert!((top.texcoord.get() - Vec2::new(0.5, 0.25)).length() < 1e-14);
     }
 
     /// The implicit function, written independently of the intersection: negative inside.

@@ -6,6 +6,7 @@ use crate::aabb::image_magnitude;
 use crate::hit::Crossings;
 use crate::hit::Hit;
 use crate::hit::Surface;
+use crate::hit::Texcoord;
 use crate::ray::Ray;
 use crate::vector::{Affine, Vec2, Vec3};
 
@@ -76,7 +77,7 @@ impl Triangle {
             point: v1 * alpha + v2 * beta + v3 * gamma,
             geometric_normal,
             shading_normal: interpolated_normal(weights, &self.normals, geometric_normal),
-            texcoord: t1 * alpha + t2 * beta + t3 * gamma,
+            texcoord: Texcoord::Known(t1 * alpha + t2 * beta + t3 * gamma),
         }
     }
 
@@ -310,7 +311,7 @@ mod tests {
             let triangle = with_normals(normals);
             let surface = triangle.surface(&ray, triangle.crossings(&ray).as_slice()[0]);
             assert_eq!((surface.point, surface.geometric_normal), (Vec3::new(1.0, 2.0, 2.0), Vec3::Z));
-            assert_eq!(surface.texcoord, Vec2::new(0.25, 0.5));
+            assert_eq!(surface.texcoord.get(), Vec2::new(0.25, 0.5));
             surface.shading_normal
         };
         // Lengths count: α = ¼, β = ¼, γ = ½.
