@@ -91,6 +91,24 @@ impl Accelerator {
         }
     }
 
+    /// Fits the boxes to items that have moved, without building anew; `order` is what the build gave. The answers
+    /// stay exact, but the further items have moved from where they stood, the more boxes a ray has to test. False,
+    /// and nothing done, for an octree or a BSP tree, whose cells do not move with the items: build those anew.
+    ///
+    /// # Panics
+    /// Where the number of items has changed.
+    pub fn refit(&mut self, boxes: &impl Boxes, order: Option<&[u32]>) -> bool {
+        assert_eq!(boxes.len(), self.items, "refitting needs the items that the structure was built over");
+        let bounds = union(boxes);
+        match &mut self.structure {
+            Structure::Brute => {}
+            Structure::Tree(tree) => tree.refit(boxes, order.unwrap_or_default(), bounds),
+            Structure::Octree(_) | Structure::Bsp(_) => return false,
+        }
+        self.bounds = bounds;
+        true
+    }
+
     /// Which of the five it is.
     pub fn kind(&self) -> Kind {
         self.kind

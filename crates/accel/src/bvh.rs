@@ -12,6 +12,8 @@ pub mod build;
 
 pub mod check;
 
+pub mod refit;
+
 pub mod walk;
 
 pub mod beam;

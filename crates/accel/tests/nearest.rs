@@ -278,6 +278,25 @@ fn threads_leave_no_trace() {
 }
 
 #[test]
+fn a_refitted_tree_finds_items_that_have_moved() {
+    let before = spheres(3000, 2.0, 21);
+    let mut random = Random::new(22);
+    let moved = |sphere: &Sphere| Sphere { center: sphere.center + random.direction() * 0.3, ..*sphere };
+    let after = Scene(before.0.iter().map(moved).collect());
+    let queries = hard_rays(&after, 500, 23);
+    let expected = nearest(&after, &queries);
+    for kind in [Kind::Brute, Kind::Boxes, Kind::Bvh] {
+        let mut built = build(kind, &before, &[]);
+        assert!(built.accelerator.refit(&after, built.order.as_deref()));
+        built.accelerator.validate(&after, built.order.as_deref()).expect("well formed");
+        assert_eq!(trace(&built, dotray_accel::simd::level(), &after, &queries, false), expected);
+    }
+    for kind in [Kind::Octree, Kind::Bsp] {
+        assert!(!build(kind, &before, &[]).accelerator.refit(&after, None));
+    }
+}
+
+#[test]
 fn all_but_brute_force_save_ten_times_the_work() {
     let scene = spheres(10_000, 2.0, 17);
     let mut random = Random::new(18);
