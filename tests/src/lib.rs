@@ -7,3 +7,5 @@ pub mod corpus;
 pub mod pictures;
 
 pub mod program;
+
+pub mod targets;

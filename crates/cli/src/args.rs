@@ -7,9 +7,12 @@ use std::path::PathBuf;
 
 use crate::check_args::CheckArgs;
 use crate::check_args::FormatArgs;
+use crate::inspect_args::ExplainArgs;
+use crate::inspect_args::TreeArgs;
 use crate::judge_args::CompareArgs;
 use crate::judge_args::GradeArgs;
 use crate::reading_args::DialectName;
+use crate::reading_args::LimitArgs;
 use crate::reading_args::ReadingArgs;
 use crate::render_args::RenderArgs;
 use crate::values::TextOrJson;
@@ -47,6 +50,7 @@ Examples:
   dotray check slides.ray                     all faults and warnings, with likely repairs
   dotray info slides.ray                      what is in the scene
   dotray dump --world slides.ray              its tree with all matrices
+  dotray explain slides.ray 320 240           why a pixel has its colour
   dotray help render                          every option of `render`
 
 Exit codes:
@@ -72,6 +76,10 @@ pub enum Command {
     Format(FormatArgs),
     /// Print a scene's tree: one line a group or shape, as the reader understood it.
     Dump(DumpArgs),
+    /// Tell why a pixel has its colour: its rays, what they met, each term of the formula.
+    Explain(Box<ExplainArgs>),
+    /// Show a scene's tree with the boxes around its groups, or the figures of an accelerator.
+    Tree(TreeArgs),
     /// Say what is in a scene: shapes, lights, materials, textures, bounds, camera.
     Info(InfoArgs),
     /// Say how far two pictures are apart; 3 is the exit code where that is too far.
@@ -80,6 +88,8 @@ pub enum Command {
     Grade(GradeArgs),
     /// Write a scene in another dialect, and say what could not be carried over.
     Convert(ConvertArgs),
+    /// Help an editor with .ray files: a language server over standard input and output.
+    Lsp(LspArgs),
     /// Print a manual page, or the reference in Markdown.
     Man(ManArgs),
     /// Print a completion script for a shell.
@@ -141,6 +151,24 @@ pub struct ConvertArgs {
     /// The dialect of OUT: slides, uva or jhu; auto is slides.
     #[arg(long, value_enum, value_name = "NAME", default_value_t)]
     pub to: DialectName,
+
+    /// How much the scene may ask for.
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
+
+/// `dotray lsp`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Editors start it by themselves; docs/editors.md says how each is told to.")]
+pub struct LspArgs {
+    /// Speak over standard input and output, which it does anyway; editors like to say so.
+    #[arg(long)]
+    pub stdio: bool,
+
+    /// How scenes are read.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
 }
 
 /// `dotray man`.

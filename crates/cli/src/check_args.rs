@@ -4,6 +4,8 @@ use clap::Args;
 use clap::ValueEnum;
 use std::path::PathBuf;
 
+use crate::reading_args::LimitArgs;
+
 /// `dotray check`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
@@ -33,6 +35,10 @@ pub struct CheckArgs {
     /// Explain a code at length, with an example; `list` prints all codes.
     #[arg(long, value_name = "CODE", conflicts_with_all = ["files", "strict"])]
     pub explain: Option<String>,
+
+    /// How much the scenes may ask for.
+    #[command(flatten)]
+    pub limits: LimitArgs,
 }
 
 /// How `check` prints.
@@ -78,4 +84,8 @@ pub struct FormatArgs {
     /// Print to standard output instead of replacing files.
     #[arg(long, conflicts_with = "check")]
     pub stdout: bool,
+
+    /// How much the files may ask for.
+    #[command(flatten)]
+    pub limits: LimitArgs,
 }

@@ -5,11 +5,14 @@ mod compare;
 mod completions;
 mod convert;
 mod dump;
+mod explain;
 mod format;
 mod grade;
 mod info;
+mod lsp;
 mod man;
 mod render;
+mod tree;
 
 use crate::args::Cli;
 use crate::args::Command;
@@ -22,10 +25,13 @@ pub fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Check(typed) => check::run(typed, cli.color),
         Command::Format(typed) => format::run(typed, cli.color),
         Command::Dump(typed) => dump::run(typed, cli.color),
+        Command::Explain(typed) => explain::run(typed, cli.color),
+        Command::Tree(typed) => tree::run(typed, cli.color),
         Command::Info(typed) => info::run(typed, cli.color),
         Command::Convert(typed) => convert::run(typed, cli.color),
         Command::Grade(typed) => grade::run(typed),
         Command::Compare(typed) => compare::run(typed),
+        Command::Lsp(typed) => lsp::run(typed),
         Command::Man(typed) => man::run(typed),
         Command::Completions(typed) => completions::run(typed),
     }

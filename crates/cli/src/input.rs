@@ -4,12 +4,11 @@ use dotray::scene::Diagnostic;
 use dotray::scene::Files;
 use dotray::scene::Resolved;
 use dotray::scene::Scene;
-use dotray::scene::files::Disk;
-use dotray::scene::load::LoadOptions;
+use dotray::scene::files::is_outside;
 use dotray::scene::load::Loaded;
 use dotray::scene::load::load;
 use dotray::scene::load::load_text;
-use dotray::scene::resolve::resolve;
+use dotray::scene::resolve::resolve_within;
 use dotray::scene::sources::Sources;
 use dotray::scene::span::FileId;
 use std::io;
@@ -22,17 +21,26 @@ use std::time::Instant;
 
 use crate::exit::Failure;
 use crate::exit::say;
+use crate::limits::load_options;
+use crate::limits::reachable;
+use crate::limits::resolve_limits;
 use crate::meaning::Place;
 use crate::messages::Messages;
+use crate::reading_args::LimitArgs;
 use crate::reading_args::ReadingArgs;
 
-/// The disk with a clock: what reading took.
-#[derive(Debug, Default)]
+/// The disk, or a folder of it, with a clock: what reading took.
 pub struct TimedDisk {
     nanoseconds: AtomicU64,
+    disk: Box<dyn Files>,
 }
 
 impl TimedDisk {
+    /// The whole disk, or what `--confine` leaves of it.
+    pub fn new(limits: &LimitArgs) -> Result<Self, Failure> {
+        Ok(Self { nanoseconds: AtomicU64::new(0), disk: reachable(limits)? })
+    }
+
     /// Seconds spent reading so far.
     pub fn seconds(&self) -> f64 {
         self.nanoseconds.load(Ordering::Relaxed) as f64 * 1e-9
@@ -52,22 +60,26 @@ const WHITE: &str = "\0white.ppm";
 
 impl Files for TimedDisk {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        if path == Path::new(WHITE) {
-            return Ok(b"P6 1 1 255\n\xff\xff\xff".to_vec());
-        }
-        self.timed(|| Disk.read(path))
+        self.timed(|| self.disk.read(path))
     }
 
     fn read_at_most(&self, path: &Path, limit: u64) -> io::Result<Vec<u8>> {
-        self.timed(|| Disk.read_at_most(path, limit))
+        if path == Path::new(WHITE) {
+            return Ok(b"P6 1 1 255\n\xff\xff\xff".to_vec());
+        }
+        self.timed(|| self.disk.read_at_most(path, limit))
+    }
+
+    fn read_asked_for(&self, path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+        self.timed(|| self.disk.read_asked_for(path, limit))
     }
 
     fn identity(&self, path: &Path) -> PathBuf {
-        Disk.identity(path)
+        self.disk.identity(path)
     }
 
     fn names_in(&self, folder: &Path) -> Vec<String> {
-        Disk.names_in(folder)
+        self.disk.names_in(folder)
     }
 }
 
@@ -94,10 +106,10 @@ impl Written {
 }
 
 /// Reads a scene. Where it has errors, prints all messages and stops.
-pub fn read(place: &Place, reading: ReadingArgs, messages: Messages) -> Result<Written, Failure> {
-    let disk = TimedDisk::default();
+pub fn read(place: &Place, reading: &ReadingArgs, messages: Messages) -> Result<Written, Failure> {
+    let disk = TimedDisk::new(&reading.limits)?;
     let start = Instant::now();
-    let options = LoadOptions { dialect: reading.dialect.chosen(), ..LoadOptions::default() };
+    let options = load_options(reading);
     let loaded = match place {
         Place::File(path) => load(path, &disk, &options),
         Place::Standard => {
@@ -147,12 +159,12 @@ pub struct Understood {
 }
 
 /// Reads and resolves a scene and prints all messages; stops where there is an error.
-pub fn understand(place: &Place, reading: ReadingArgs, messages: Messages) -> Result<Understood, Failure> {
+pub fn understand(place: &Place, reading: &ReadingArgs, messages: Messages) -> Result<Understood, Failure> {
     let read = read(place, reading, messages)?;
     let text_bytes = read.text_bytes();
     let Written { scene, warnings, sources, disk, mut seconds } = read;
     let start = Instant::now();
-    let outcome = resolve(scene);
+    let outcome = resolve_within(scene, &resolve_limits(&reading.limits));
     seconds.push(("resolve", start.elapsed().as_secs_f64()));
     let mut diagnostics = warnings;
     diagnostics.extend(outcome.diagnostics);
@@ -162,9 +174,13 @@ pub fn understand(place: &Place, reading: ReadingArgs, messages: Messages) -> Re
 }
 
 /// Puts white in the place of textures whose files are nowhere, and says which.
-pub fn whiten(resolved: &mut Resolved, quiet: bool) {
+pub fn whiten(resolved: &mut Resolved, disk: &TimedDisk, quiet: bool) {
     for texture in &mut resolved.textures {
-        if texture.candidates.iter().any(|path| path.exists()) {
+        let is_there = |path: &PathBuf| {
+            let missing = |fault: &io::Error| fault.kind() == io::ErrorKind::NotFound || is_outside(fault);
+            !disk.read_at_most(path, 0).is_err_and(|fault| missing(&fault))
+        };
+        if texture.candidates.iter().any(is_there) {
             continue;
         }
         texture.candidates = vec![PathBuf::from(WHITE)];

@@ -6,11 +6,15 @@ mod values;
 
 mod reading_args;
 
+mod layer_args;
+
 mod render_args;
 
 mod check_args;
 
 mod judge_args;
+
+mod inspect_args;
 
 mod args;
 
@@ -34,13 +38,31 @@ mod progress;
 
 mod cost;
 
+mod limits;
+
 mod input;
+
+mod places;
+
+mod drawing;
+
+mod explain;
+
+mod tree;
 
 mod textures;
 
 mod findings;
 
 mod output;
+
+mod background;
+
+mod overlay;
+
+mod layers;
+
+mod extras;
 
 mod reference;
 

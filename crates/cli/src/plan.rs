@@ -5,12 +5,15 @@ use dotray::image::Format;
 use dotray::image::Limits;
 use dotray::render::Antialias;
 use dotray::render::Crop;
+use dotray::render::Layer;
 use dotray::render::Options;
 use dotray::render::PrepareOptions;
 use std::fmt::Display;
 use std::path::PathBuf;
 
 use crate::exit::Failure;
+use crate::layer_args::Background;
+use crate::layer_args::Overlay;
 use crate::meaning;
 use crate::meaning::Place;
 use crate::render_args::RenderArgs;
@@ -35,6 +38,12 @@ pub struct Plan {
     pub options: Options,
     /// How the scene is prepared.
     pub prepare: PrepareOptions,
+    /// What lies behind everything, if not what the scene says.
+    pub background: Option<Background>,
+    /// What else is stored.
+    pub layers: Vec<Layer>,
+    /// What is drawn over the picture.
+    pub overlay: Option<Overlay>,
     /// Print errors only.
     pub quiet: bool,
     /// Whether and how to print what it cost.
@@ -62,8 +71,23 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
     };
     let encode = storage::encode_options(typed, format)?;
     storage::check_jpeg_edge(format, &options)?;
-    let (quiet, stats) = (typed.quiet, typed.stats);
-    Ok(Plan { input, output, output_is_default, format, encode, options, prepare, quiet, stats })
+    storage::check_alpha(typed, format)?;
+    let layers = typed.layers.clone().unwrap_or_default().0;
+    storage::check_layers(&layers, format, &output)?;
+    Ok(Plan {
+        input,
+        output,
+        output_is_default,
+        format,
+        encode,
+        options,
+        prepare,
+        background: typed.background.clone(),
+        layers,
+        overlay: typed.overlay,
+        quiet: typed.quiet,
+        stats: typed.stats,
+    })
 }
 
 /// A value that has a place and an option: one of them, or neither.
@@ -101,7 +125,6 @@ fn options(typed: &RenderArgs) -> Result<Options, Failure> {
         Crop { x, y, width, height }
     });
     Ok(Options {
-        transparent: false,
         width,
         height,
         crop,
@@ -113,6 +136,8 @@ fn options(typed: &RenderArgs) -> Result<Options, Failure> {
         shadows: meaning::shadows(typed.shadows),
         texture_filter: meaning::texture_filter(typed.texture_filter),
         light_samples: typed.light_samples.unwrap_or(defaults.light_samples),
+        transparent: matches!(typed.background, Some(Background::Transparent | Background::Image(_))),
+        max_pixels: typed.max_pixels.unwrap_or(defaults.max_pixels),
         threads: typed.threads.map(usize::from),
         tile_size: typed.tile_size.unwrap_or(defaults.tile_size),
     })
@@ -154,7 +179,10 @@ fn limits(typed: &RenderArgs, options: &Options) -> Result<Limits, Failure> {
         )));
     }
     // Whoever allows more pixels than usual allows the memory for them.
-    Ok(Limits { max_pixels, max_bytes: defaults.max_bytes.max(max_pixels.saturating_mul(16)) })
+    let max_bytes = defaults.max_bytes.max(max_pixels.saturating_mul(16));
+    // Textures keep within the limit on memory, too.
+    let most = typed.reading.limits.max_memory.map_or(u64::MAX, |size| size.0);
+    Ok(Limits { max_pixels, max_bytes: max_bytes.min(most) })
 }
 
 fn antialias(typed: &RenderArgs) -> Result<Antialias, Failure> {

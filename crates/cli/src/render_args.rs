@@ -3,6 +3,9 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use crate::layer_args::Background;
+use crate::layer_args::Layers;
+use crate::layer_args::Overlay;
 use crate::reading_args::ReadingArgs;
 use crate::values::Aa;
 use crate::values::Accel;
@@ -86,6 +89,18 @@ pub struct RenderArgs {
     /// How often `--aa adaptive` may divide a pixel [default: 3].
     #[arg(long, value_name = "N", help_heading = PICTURE)]
     pub aa_depth: Option<u32>,
+    /// What lies behind everything: a colour R,G,B in place of the scene's; `transparent` for a picture with an alpha
+    /// channel; or image:FILE, stretched over the picture.
+    #[arg(long, value_name = "WHAT", allow_hyphen_values = true, help_heading = PICTURE)]
+    pub background: Option<Background>,
+    /// Also these layers, separated by commas, or all: depth, normal, position, shape, material, st, object, shadow,
+    /// direct, reflected, transmitted, rays, boxtests, shapetests. Into an OpenEXR picture as channels such as
+    /// depth.Z; else each into a picture of its own, such as OUT.depth.png.
+    #[arg(long, value_name = "NAMES", help_heading = PICTURE)]
+    pub layers: Option<Layers>,
+    /// Drawn over the picture.
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = PICTURE)]
+    pub overlay: Option<Overlay>,
 
     /// How deep mirrored and refracted rays may go, in place of RECURSION.
     #[arg(long, visible_alias = "rLimit", value_name = "N", help_heading = LIGHT)]
@@ -153,6 +168,8 @@ Examples:
   dotray render --in room.ray --out room.bmp --width 500 --height 500 --rLimit 5 --cLimit 0.0001
                                                       as courses call their programs
   dotray render slides.ray hdr.exr                    unclamped floats
+  dotray render slides.ray all.exr --layers all       with depth, normals, shapes and more as channels
+  dotray render slides.ray cut.png --background transparent
   dotray render slides.ray --crop 100,50,64,64        a part, for a closer look
   dotray render slides.ray --stats --threads 1        what it cost
   cat slides.ray | dotray render - - --format png > slides.png

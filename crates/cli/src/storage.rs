@@ -2,10 +2,12 @@
 
 use dotray::image::EncodeOptions;
 use dotray::image::Format;
+use dotray::render::Layer;
 use dotray::render::Options;
 use std::path::Path;
 
 use crate::exit::Failure;
+use crate::layer_args::Background;
 use crate::meaning;
 use crate::meaning::Place;
 use crate::render_args::RenderArgs;
@@ -70,6 +72,37 @@ pub fn check_jpeg_edge(format: Format, options: &Options) -> Result<(), Failure>
         )));
     }
     Ok(())
+}
+
+/// Whether the format keeps an alpha channel, where one is asked for.
+pub fn check_alpha(typed: &RenderArgs, format: Format) -> Result<(), Failure> {
+    let keeps_alpha = match format {
+        Format::Png | Format::Png16 | Format::Qoi | Format::Tiff | Format::Exr => true,
+        Format::Bmp | Format::Jpeg | Format::Ppm | Format::Hdr | Format::Pfm => false,
+    };
+    if typed.background == Some(Background::Transparent) && !keeps_alpha {
+        let name = format.name();
+        return Err(Failure::Usage(format!(
+            "--background transparent needs an alpha channel, which {name} has not: take PNG, QOI, TIFF or OpenEXR"
+        )));
+    }
+    Ok(())
+}
+
+/// Whether layers have a place: beside the picture or in it.
+pub fn check_layers(layers: &[Layer], format: Format, output: &Place) -> Result<(), Failure> {
+    if layers.is_empty() || format == Format::Exr {
+        return Ok(());
+    }
+    match output {
+        Place::Standard => Err(Failure::Usage(
+            "--layers on standard output needs --format exr: other formats take a file for each".to_owned(),
+        )),
+        Place::File(_) if !Format::Png.is_built() => {
+            Err(Failure::Usage("--layers needs PNG or OpenEXR, which are left out of this build".to_owned()))
+        }
+        Place::File(_) => Ok(()),
+    }
 }
 
 /// How the pixels are stored.

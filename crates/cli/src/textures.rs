@@ -5,7 +5,6 @@ use dotray::image::Limits;
 use dotray::image::decode;
 use dotray::scene::Diagnostic;
 use dotray::scene::Files;
-use dotray::scene::files::Disk;
 use dotray::scene::lex::Lexer;
 use dotray::scene::lex::TokenKind;
 use dotray::scene::model::Placed;
@@ -24,13 +23,18 @@ use std::path::PathBuf;
 const MOST_BYTES: u64 = 4 << 30;
 
 /// Looks textures up; what several scenes name is decoded once.
-#[derive(Default)]
-pub struct Textures {
+pub struct Textures<'a> {
+    files: &'a dyn Files,
     /// What is wrong with a file; nothing is.
     seen: HashMap<PathBuf, Option<String>>,
 }
 
-impl Textures {
+impl<'a> Textures<'a> {
+    /// None looked up yet.
+    pub fn new(files: &'a dyn Files) -> Self {
+        Self { files, seen: HashMap::new() }
+    }
+
     /// An error for each texture that is not there or is no picture.
     pub fn check(&mut self, textures: &[ResolvedTexture]) -> Vec<Diagnostic> {
         textures.iter().filter_map(|texture| self.check_one(texture)).collect()
@@ -42,7 +46,7 @@ impl Textures {
             let known = self.seen.get(path).cloned();
             let fault = match known {
                 Some(fault) => fault,
-                None => match read(path) {
+                None => match self.files.read_at_most(path, MOST_BYTES) {
                     Ok(bytes) => fault_of(path, &bytes),
                     Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
                     Err(error) => {
@@ -54,16 +58,7 @@ impl Textures {
             self.seen.insert(path.clone(), fault.clone());
             return fault.map(|fault| unreadable(texture, path, &fault));
         }
-        Some(not_found(texture, refused))
-    }
-}
-
-fn read(path: &Path) -> io::Result<Vec<u8>> {
-    // A pipe or a device might never end.
-    if std::fs::metadata(path)?.is_file() {
-        Disk.read_at_most(path, MOST_BYTES)
-    } else {
-        Err(io::Error::other("it is no file"))
+        Some(not_found(self.files, texture, refused))
     }
 }
 
@@ -80,7 +75,7 @@ fn unreadable(texture: &ResolvedTexture, path: &Path, fault: &str) -> Diagnostic
         .help("save it anew as PNG, JPEG, BMP, PPM, QOI, TIFF, HDR or EXR")
 }
 
-fn not_found(texture: &ResolvedTexture, refused: Vec<String>) -> Diagnostic {
+fn not_found(files: &dyn Files, texture: &ResolvedTexture, refused: Vec<String>) -> Diagnostic {
     let mut folders: Vec<String> = Vec::new();
     for path in &texture.candidates {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -95,7 +90,7 @@ fn not_found(texture: &ResolvedTexture, refused: Vec<String>) -> Diagnostic {
         .label("named here")
         .note(format!("folders searched: {}", folders.join(", ")));
     let error = refused.into_iter().fold(error, Diagnostic::note);
-    match texture.candidates.iter().find_map(|path| similar_file(&Disk, path)) {
+    match texture.candidates.iter().find_map(|path| similar_file(files, path)) {
         Some(similar) => error.help(format!("there is a file `{similar}`")),
         None => error.help("a texture's name is relative to the folder of its .ray file"),
     }

@@ -30,6 +30,24 @@ impl FromStr for Aa {
     }
 }
 
+/// A number of bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ByteCount(pub u64);
+
+impl FromStr for ByteCount {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        const UNITS: [(&str, u32); 4] = [("K", 10), ("M", 20), ("G", 30), ("T", 40)];
+        let upper = text.trim().to_ascii_uppercase();
+        let plain = upper.strip_suffix("IB").or(upper.strip_suffix('B')).unwrap_or(&upper);
+        let unit = UNITS.into_iter().find_map(|(unit, shift)| Some((plain.strip_suffix(unit)?, shift)));
+        let (digits, shift) = unit.unwrap_or((plain, 0));
+        let bytes = digits.trim().parse::<u64>().ok().and_then(|count| count.checked_mul(1 << shift));
+        bytes.map(Self).ok_or_else(|| "expected a number of bytes, such as 1000000, 500M or 4G".to_owned())
+    }
+}
+
 /// Columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size(pub u32, pub u32);
@@ -205,6 +223,12 @@ mod tests {
         assert_eq!("800x600".parse(), Ok(Size(800, 600)));
         for wrong in ["800", "800x", "x600", "800x600x2", "-1x2", "99999999999x2"] {
             assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+        }
+        for (text, bytes) in [("17", 17), ("4G", 4 << 30), ("3 mib", 3 << 20), ("1kB", 1024), ("0", 0)] {
+            assert_eq!(text.parse(), Ok(ByteCount(bytes)));
+        }
+        for wrong in ["", "G", "-1", "1.5G", "4X", "99999999999T"] {
+            assert!(wrong.parse::<ByteCount>().is_err(), "{wrong}");
         }
         assert_eq!("1, 2,3,4".parse(), Ok(CropArg([1, 2, 3, 4])));
         for wrong in ["1,2,3", "1,2,3,4,5", "1,2,3,-4", "a,b,c,d", ""] {

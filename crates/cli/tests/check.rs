@@ -125,7 +125,7 @@ fn textures_are_looked_up_and_decoded() {
     assert_eq!(text.matches("error[").count(), 3, "{text}");
     for part in [
         "scenes/a.ray:13:1: error[texture-not-found]: the texture `images` was not found",
-        "cannot read `scenes/images`: it is no file",
+        "cannot read `scenes/images`: it is a folder",
         "scenes/a.ray:14:1: error[texture-unreadable]: the texture `noise.png` cannot be decoded: ",
         "the file is `scenes/noise.png`",
         "scenes/a.ray:15:1: error[texture-not-found]: the texture `image/wood.png` was not found",

@@ -79,7 +79,7 @@ fn manual_pages_and_completions_name_every_command() {
     let folder = Folder::new();
     let page = folder.run("man").expect(0).text();
     assert!(page.contains(".TH") && page.contains("completions"), "{page}");
-    for command in ["render", "dump", "info", "compare", "grade", "man", "completions"] {
+    for command in ["render", "dump", "info", "compare", "grade", "lsp", "man", "completions"] {
         let page = folder.run(&format!("man {command}")).expect(0).text();
         assert!(page.contains(".TH") && page.contains(&format!("dotray\\-{command}")), "{page}");
     }

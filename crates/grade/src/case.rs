@@ -10,6 +10,8 @@ use dotray_render::Options;
 use dotray_render::PrepareOptions;
 use dotray_render::Silent;
 use dotray_render::World;
+use dotray_render::estimate::check_memory;
+use dotray_render::estimate::machine_memory;
 use dotray_scene::Diagnostic;
 use dotray_scene::Files;
 use dotray_scene::Resolved;
@@ -152,6 +154,8 @@ impl Making<'_> {
         let outcome = resolve(scene);
         let mut resolved = outcome.resolved.ok_or_else(|| text(&outcome.diagnostics))?;
         change_resolved(&mut resolved);
+        check_memory(&resolved, &self.prepare, Some(self.options), machine_memory())
+            .map_err(|refused| refused.to_string())?;
         let world = World::prepare(resolved, self.textures, &self.prepare).map_err(|faults| text(&faults))?;
         let rendering = dotray_render::render(&world, self.options, &Silent);
         rendering.map(|rendering| rendering.image).map_err(|error| error.to_string())

@@ -1,6 +1,7 @@
 //! The files of a scene, read before any program runs: no program can change them for another test.
 
 use dotray_scene::Files;
+use dotray_scene::files::Confined;
 use dotray_scene::files::Disk;
 use std::collections::BTreeMap;
 use std::io;
@@ -40,6 +41,7 @@ impl Files for Snapshot {
 /// The disk below a folder, remembering what was read.
 #[derive(Debug)]
 pub struct Recorder {
+    disk: io::Result<Confined<Disk>>,
     folder: PathBuf,
     files: Mutex<BTreeMap<PathBuf, Vec<u8>>>,
 }
@@ -47,7 +49,7 @@ pub struct Recorder {
 impl Recorder {
     /// Reads below `folder` only.
     pub fn new(folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), files: Mutex::default() }
+        Self { disk: Confined::new(Disk, folder), folder: folder.to_owned(), files: Mutex::default() }
     }
 
     /// All that was read.
@@ -67,7 +69,9 @@ impl Files for Recorder {
         if !inside {
             return Err(io::Error::other("it lies outside the suite's folder"));
         }
-        let content = Disk.read_at_most(&self.folder.join(&path), limit)?;
+        // A link inside may lead outside, too.
+        let disk = self.disk.as_ref().map_err(|fault| io::Error::from(fault.kind()))?;
+        let content = disk.read_at_most(&self.folder.join(&path), limit)?;
         if let Ok(mut files) = self.files.lock() {
             files.insert(path, content.clone());
         }
@@ -88,6 +92,12 @@ mod tests {
         assert_eq!(recorder.read(Path::new("deep/../deep/a")).unwrap(), b"x");
         assert!(recorder.read(Path::new("../a")).unwrap_err().to_string().contains("outside"));
         assert!(recorder.read(&from.path().join("deep/a")).is_err());
+        #[cfg(unix)]
+        for (name, target) in [("inner", "deep/a"), ("outer", "/etc/hostname")] {
+            std::os::unix::fs::symlink(target, from.path().join(name)).unwrap();
+            let read = recorder.read(Path::new(name));
+            assert_eq!(read.is_ok(), name == "inner", "{read:?}");
+        }
         let snapshot = recorder.snapshot();
         assert_eq!(snapshot.read(Path::new("./deep/a")).unwrap(), b"x");
         assert!(snapshot.read(Path::new("deep/b")).is_err());

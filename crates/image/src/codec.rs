@@ -85,7 +85,8 @@ fn unknown_content(bytes: &[u8]) -> ImageError {
 /// Makes the bytes of a file of a picture; the same picture always gives the same bytes.
 ///
 /// Formats of whole numbers get round(255·clamp(c, 0, 1)), float formats the values as they are. PNG, QOI, TIFF and
-/// OpenEXR keep an alpha channel, the others leave it out.
+/// OpenEXR keep an alpha channel, the others leave it out. In OpenEXR colours are multiplied by alpha, as its readers
+/// expect; in the others they are not.
 ///
 /// # Errors
 /// [`ImageError::Encoder`] if the format cannot hold the picture, [`ImageError::JpegQuality`] for a quality outside 1

@@ -39,8 +39,21 @@ impl Image {
     /// # Errors
     /// [`ImageError::Size`] or [`ImageError::Memory`] for a size of zero or one over the default [`Limits`].
     pub fn new(width: usize, height: usize, channels: Channels) -> Result<Image, ImageError> {
+        Image::new_within(width, height, channels, &Limits::default())
+    }
+
+    /// The same within other limits.
+    ///
+    /// # Errors
+    /// [`ImageError::Size`] or [`ImageError::Memory`] for a size of zero or one over the limits.
+    pub fn new_within(
+        width: usize,
+        height: usize,
+        channels: Channels,
+        limits: &Limits,
+    ) -> Result<Image, ImageError> {
         let bytes_per_pixel = 4 * channels.count() as u64;
-        let (width, height) = Limits::default().check(width as u64, height as u64, bytes_per_pixel)?;
+        let (width, height) = limits.check(width as u64, height as u64, bytes_per_pixel)?;
         let samples = zeroed(width, height, channels)?;
         Ok(Image { width, height, channels, samples })
     }
@@ -156,6 +169,21 @@ impl Image {
                 .collect(),
         }
     }
+}
+
+/// A pixel's samples as formats have them whose colours are multiplied by alpha.
+pub(crate) fn premultiplied(pixel: &[f32]) -> [f32; 4] {
+    match *pixel {
+        // Where alpha is 1 the colour stays, even an infinite one.
+        [r, g, b, a] if a != 1.0 => [r * a, g * a, b * a, a],
+        [r, g, b, ..] => [r, g, b, 1.0],
+        _ => [0.0; 4],
+    }
+}
+
+/// The other way; a colour without alpha, which only glows, stays as it is.
+pub(crate) fn straight([r, g, b, a]: [f32; 4]) -> [f32; 4] {
+    if a > 0.0 && a != 1.0 { [r / a, g / a, b / a, a] } else { [r, g, b, a] }
 }
 
 /// Zeroes for a picture whose size has been checked; an error instead of an abort where memory has run out.

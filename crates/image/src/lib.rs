@@ -55,12 +55,15 @@ mod openexr;
 
 mod codec;
 
+mod exr_layers;
+
 mod file;
 
 pub mod compare;
 
 pub use codec::{EncodeOptions, decode, encode};
 pub use error::ImageError;
+pub use exr_layers::{NamedChannel, encode_exr_layers};
 pub use file::write_file;
 pub use format::Format;
 pub use image::{Channels, Image};

@@ -4,8 +4,11 @@ use std::io::Cursor;
 
 use exr::meta::MetaData;
 use exr::meta::header::Header;
+use exr::prelude::AnyChannel;
+use exr::prelude::AnyChannels;
 use exr::prelude::Compression;
 use exr::prelude::Encoding;
+use exr::prelude::FlatSamples;
 use exr::prelude::Layer;
 use exr::prelude::LayerAttributes;
 use exr::prelude::LineOrder;
@@ -21,17 +24,47 @@ use crate::error::ImageError;
 use crate::guard::guarded;
 use crate::image::Channels;
 use crate::image::Image;
+use crate::image::premultiplied;
+use crate::image::straight;
 use crate::limits::Limits;
 
 const NAME: &str = "OpenEXR";
 
+const ENCODING: Encoding = Encoding {
+    compression: Compression::ZIP16,
+    blocks: exr::image::Blocks::ScanLines,
+    line_order: LineOrder::Increasing,
+};
+
+/// The bytes of a file with channels of these names, 32-bit floats in ZIP-compressed scan lines.
+pub(crate) fn encode_channels(
+    width: usize,
+    height: usize,
+    channels: impl Iterator<Item = (String, Vec<f32>)>,
+) -> Result<Vec<u8>, ImageError> {
+    let failed = |message: String| ImageError::Encoder { format: NAME, width, height, message };
+    let mut list = exr::prelude::SmallVec::new();
+    for (name, samples) in channels {
+        let name = exr::prelude::Text::new_or_none(&name)
+            .ok_or_else(|| failed(format!("`{name}` cannot be a channel's name")))?;
+        list.push(AnyChannel::new(name, FlatSamples::F32(samples)));
+    }
+    let mut file = Vec::new();
+    let written = guarded(|| {
+        let layer =
+            Layer::new((width, height), LayerAttributes::default(), ENCODING, AnyChannels::sort(list));
+        let sink = Cursor::new(&mut file);
+        let result = exr::image::Image::from_layer(layer).write().non_parallel().to_buffered(sink);
+        result.map_err(|error| error.to_string())
+    });
+    written.map_err(failed)?;
+    Ok(file)
+}
+
 /// The bytes of a file with 32-bit floats R, G, B and, where the picture has it, A, in ZIP-compressed scan lines.
+/// Colours are multiplied by alpha, as the format has it.
 pub(crate) fn encode(image: &Image) -> Result<Vec<u8>, ImageError> {
-    let encoding = Encoding {
-        compression: Compression::ZIP16,
-        blocks: exr::image::Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
+    let encoding = ENCODING;
     let size = (image.width(), image.height());
     let attributes = LayerAttributes::default();
     let pixel = |Vec2(x, y): Vec2<usize>| image.pixel(x, y).unwrap_or_default();
@@ -49,7 +82,7 @@ pub(crate) fn encode(image: &Image) -> Result<Vec<u8>, ImageError> {
             }
             Channels::Rgba => {
                 let channels = SpecificChannels::rgba(|place: Vec2<usize>| {
-                    let [r, g, b, a] = pixel(place);
+                    let [r, g, b, a] = premultiplied(&pixel(place));
                     (r, g, b, a)
                 });
                 let layer = Layer::new(size, attributes, encoding, channels);
@@ -79,7 +112,7 @@ impl Canvas {
     }
 }
 
-/// Reads the first layer that has the channels R, G, B or Y, with A if it is there, as they are.
+/// Reads the first layer that has the channels R, G, B or Y, with A if it is there, by which colours are divided.
 pub(crate) fn decode(file: &[u8], limits: &Limits) -> Result<Image, ImageError> {
     let refused = |message: String| ImageError::Decoder { format: NAME, message };
     let meta =
@@ -157,7 +190,9 @@ fn read_colour(file: &[u8], channels: Channels) -> Result<Vec<f32>, String> {
         .largest_resolution_level()
         .rgba_channels(
             move |size, _| canvas(size, channels),
-            |canvas: &mut Canvas, place, (r, g, b, a): (f32, f32, f32, f32)| canvas.set(place, [r, g, b, a]),
+            |canvas: &mut Canvas, place, (r, g, b, a): (f32, f32, f32, f32)| {
+                canvas.set(place, straight([r, g, b, a]));
+            },
         )
         .first_valid_layer()
         .all_attributes()
@@ -175,7 +210,7 @@ fn read_grey(file: &[u8], channels: Channels) -> Result<Vec<f32>, String> {
         .optional("A", 1.0_f32)
         .collect_pixels(
             move |size, _| canvas(size, channels),
-            |canvas: &mut Canvas, place, (y, a): (f32, f32)| canvas.set(place, [y, y, y, a]),
+            |canvas: &mut Canvas, place, (y, a): (f32, f32)| canvas.set(place, straight([y, y, y, a])),
         )
         .first_valid_layer()
         .all_attributes()

@@ -12,6 +12,7 @@ use crate::inspect::Meeting;
 use crate::inspect::RayNode;
 use crate::inspect::Shadow;
 use crate::options::Options;
+use crate::options::Shadows;
 use crate::query::Tests;
 use crate::tiles::Observer;
 use crate::tiles::Progress;
@@ -107,6 +108,26 @@ impl Layer {
         }
     }
 
+    /// Whether lights and further rays have no part in it.
+    const fn is_geometric(self) -> bool {
+        match self {
+            Self::Depth
+            | Self::Normal
+            | Self::Position
+            | Self::Shape
+            | Self::Material
+            | Self::St
+            | Self::Object => true,
+            Self::Shadow
+            | Self::Direct
+            | Self::Reflected
+            | Self::Transmitted
+            | Self::Rays
+            | Self::BoxTests
+            | Self::ShapeTests => false,
+        }
+    }
+
     /// Appends the layer's numbers of one pixel.
     fn append(self, node: &RayNode, samples: &mut Vec<f32>) {
         let met = node.meeting.as_ref();
@@ -199,6 +220,9 @@ pub fn render_layers(
     observer: &dyn Observer,
 ) -> Result<Option<Vec<LayerPicture>>, RenderError> {
     options.validate()?;
+    let geometric = wanted.iter().all(|layer| layer.is_geometric());
+    let first_hits = Options { recursion: 0, shadows: Shadows::Off, light_samples: 1, ..options.clone() };
+    let options = if geometric { &first_hits } else { options };
     let window = options.window();
     let (width, height) = (window.width as usize, window.height as usize);
     let camera = Camera::new(&world.camera, options.width, options.height);

@@ -11,6 +11,8 @@ pub mod options;
 
 pub mod stats;
 
+pub mod estimate;
+
 pub mod camera;
 
 pub mod noise;

@@ -77,7 +77,7 @@ impl Lamp {
     fn fading(&self, distance: f64) -> f64 {
         let a = &self.attenuation;
         let sum = a.constant + a.linear * distance + a.quadratic * (distance * distance);
-        if sum > 0.0 { 1.0 / sum } else { 1.0 }
+        if sum > 0.0 { (1.0 / sum).min(MOST) } else { 1.0 }
     }
 }
 
@@ -163,9 +163,13 @@ impl Light {
     }
 }
 
+/// No factor is infinite, because infinite times black is not a number: an exponent below 0 or an attenuation of next
+/// to nothing makes factors without bound. Far less than this is white.
+pub(crate) const MOST: f64 = 1e100;
+
 /// F_SPOT inside of the cone.
 fn fall_off(cosine: f64, exponent: f64) -> f64 {
-    libm::pow(cosine.max(0.0), exponent)
+    libm::pow(cosine.max(0.0), exponent).min(MOST)
 }
 
 /// A place in the unit disc: `count` places by the golden angle, equal areas each (H. Vogel, "A better way to
@@ -235,6 +239,14 @@ mod tests {
         assert!(mean.0.abs() / f64::from(count) < 1e-3 && mean.1.abs() / f64::from(count) < 1e-3);
         let inner = points.iter().filter(|p| p.0 * p.0 + p.1 * p.1 < 0.25).count();
         assert!((inner as f64 / f64::from(count) - 0.25).abs() < 1e-3);
+    }
+
+    #[test]
+    fn no_factor_is_infinite() {
+        assert_eq!(fall_off(0.5, -1e308), MOST);
+        assert_eq!(fall_off(0.0, -1.0), MOST);
+        let attenuation = Attenuation { constant: 5e-324, linear: 0.0, quadratic: 0.0 };
+        assert_eq!(Lamp::new(Vec3::ONE, Vec3::ZERO, attenuation).fading(1.0), MOST);
     }
 
     #[test]

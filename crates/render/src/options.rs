@@ -85,6 +85,8 @@ pub struct Options {
     /// The picture has an alpha channel: the share of a pixel's samples whose eye rays meet something. Eye rays that
     /// meet nothing then give no colour; mirrored and refracted ones see the background as ever.
     pub transparent: bool,
+    /// The most pixels that the part which is computed may have.
+    pub max_pixels: u64,
     /// Threads; `None` for one a core. The picture does not depend on it.
     pub threads: Option<usize>,
     /// The edge of a tile in pixels. The picture does not depend on it.
@@ -104,6 +106,7 @@ impl Default for Options {
             texture_filter: TextureFilter::Bilinear,
             light_samples: 64,
             transparent: false,
+            max_pixels: dotray_image::Limits::default().max_pixels,
             threads: None,
             tile_size: 32,
         }

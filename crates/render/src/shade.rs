@@ -8,6 +8,7 @@
 //! ```
 
 use crate::light::Incident;
+use crate::light::MOST;
 use crate::options::TextureFilter;
 use crate::query::Nearest;
 use crate::solid;
@@ -116,7 +117,8 @@ impl<'a> ShadePoint<'a> {
         if cosine <= 0.0 && shininess > 0.0 {
             return Vec3::ZERO;
         }
-        specular * libm::pow(cosine.max(0.0), shininess)
+        // Rounding may leave a cosine above 1, whose power has no bound.
+        specular * libm::pow(cosine.max(0.0), shininess).min(MOST)
     }
 
     /// The mirrored ray.

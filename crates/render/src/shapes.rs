@@ -6,6 +6,7 @@
 use crate::bake::Baked;
 use crate::bake::Lists;
 use crate::cull::Culls;
+use crate::estimate::written;
 use crate::form::Form;
 use dotray_accel::narrow::Frame;
 use dotray_geometry::Crossings;
@@ -218,22 +219,7 @@ impl Shapes {
             size_of_val(list) as u64
         }
         let baked = self.baked.memory() + bytes(&self.lists.runs) + bytes(&self.lists.frames);
-        let written = self
-            .lists
-            .files
-            .iter()
-            .map(|file| {
-                bytes(&file.spheres.shapes)
-                    + bytes(&file.cuboids.shapes)
-                    + bytes(&file.cylinders.shapes)
-                    + bytes(&file.cones.shapes)
-                    + bytes(&file.triangles.shapes)
-                    + bytes(&file.indexed_triangles.shapes)
-                    + bytes(&file.tori.shapes)
-                    + bytes(&file.open_sides.shapes)
-                    + bytes(&file.vertices)
-            })
-            .sum();
+        let written = written(&self.lists.files);
         (baked, written)
     }
 }

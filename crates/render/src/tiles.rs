@@ -18,6 +18,7 @@ use dotray_geometry::Vec3;
 use dotray_geometry::Vec4;
 use dotray_image::Channels;
 use dotray_image::Image;
+use dotray_image::Limits;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Condvar;
@@ -80,9 +81,11 @@ pub fn render(world: &World, options: &Options, observer: &dyn Observer) -> Resu
     let start = Instant::now();
     let window = options.window();
     let channels = if options.transparent { Channels::Rgba } else { Channels::Rgb };
-    let image = Image::new(window.width as usize, window.height as usize, channels).map_err(|error| {
-        RenderError::Film { width: window.width, height: window.height, reason: error.to_string() }
-    })?;
+    // Whoever allows so many pixels allows the memory for them.
+    let limits = Limits { max_pixels: options.max_pixels, max_bytes: u64::MAX };
+    let image = Image::new_within(window.width as usize, window.height as usize, channels, &limits).map_err(
+        |error| RenderError::Film { width: window.width, height: window.height, reason: error.to_string() },
+    )?;
     let film_bytes = size_of_val(image.samples()) as u64;
     let film = Film { image, stats: Stats::default(), finished_pixels: 0 };
     let (film, complete) = if options.transparent {

@@ -8,6 +8,8 @@ use crate::texture::Texture;
 use dotray_accel::MAX_ITEMS;
 use dotray_geometry::Aabb;
 use dotray_geometry::Vec3;
+use dotray_image::ImageError;
+use dotray_image::Limits;
 use dotray_scene::Diagnostic;
 use dotray_scene::Files;
 use dotray_scene::Resolved;
@@ -182,13 +184,18 @@ fn too_many_shapes(count: u32) -> Diagnostic {
 fn load_textures(
     textures: &[ResolvedTexture],
     files: &dyn Files,
-    limits: &dotray_image::Limits,
+    limits: &Limits,
 ) -> Result<Vec<Texture>, Vec<Diagnostic>> {
     let mut loaded = Vec::new();
     let mut faults = Vec::new();
+    // The limit on bytes is for all textures together.
+    let mut left = limits.max_bytes;
     for texture in textures {
-        match load_texture(texture, files, limits) {
-            Ok(texture) => loaded.push(texture),
+        match load_texture(texture, files, &Limits { max_bytes: left, ..*limits }) {
+            Ok(texture) => {
+                left = left.saturating_sub(texture.memory());
+                loaded.push(texture);
+            }
             Err(fault) => faults.push(*fault),
         }
     }
@@ -198,7 +205,7 @@ fn load_textures(
 fn load_texture(
     texture: &ResolvedTexture,
     files: &dyn Files,
-    limits: &dotray_image::Limits,
+    limits: &Limits,
 ) -> Result<Texture, Box<Diagnostic>> {
     let fault = |code, message, notes: Vec<String>, help: &str| {
         Box::new(Diagnostic {
@@ -213,16 +220,18 @@ fn load_texture(
     };
     let mut tried = Vec::new();
     for path in &texture.candidates {
-        match files.read(path) {
+        // No picture of so many bytes in memory is larger on disk.
+        match files.read_at_most(path, limits.max_bytes) {
             Ok(bytes) => {
                 let hint = dotray_image::Format::from_path(path).ok();
                 return dotray_image::decode(&bytes, hint, limits).map(Texture::new).map_err(|error| {
-                    fault(
-                        "texture-unreadable",
-                        format!("cannot decode the texture `{}`: {error}", path.display()),
-                        Vec::new(),
-                        "save it anew as BMP, PNG, JPEG, PPM, QOI, TIFF, HDR or EXR",
-                    )
+                    let help = if matches!(error, ImageError::Size { .. } | ImageError::Memory { .. }) {
+                        "a smaller picture will do, or a higher limit (`--max-pixels`)"
+                    } else {
+                        "save it anew as BMP, PNG, JPEG, PPM, QOI, TIFF, HDR or EXR"
+                    };
+                    let message = format!("cannot decode the texture `{}`: {error}", path.display());
+                    fault("texture-unreadable", message, Vec::new(), help)
                 });
             }
             Err(error) => tried.push(format!("tried {}: {error}", path.display())),

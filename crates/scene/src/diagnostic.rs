@@ -211,6 +211,7 @@ pub const READER_CODES: &[(&str, Severity, &str)] = &[
     ("letter-case", Severity::Warning, "A directive is not written in lower case; it is accepted."),
     ("lone-affine", Severity::Error, "`#static_affine` without a shape after it."),
     ("negative-count", Severity::Error, "The number of a `#…_num` line is below 0."),
+    ("nesting-limit", Severity::Error, "Groups are nested deeper than the limit."),
     ("not-a-number", Severity::Error, "A number belongs here: decimal, finite."),
     ("not-a-scene", Severity::Error, "The file is empty, binary, or in another format."),
     ("not-an-integer", Severity::Error, "A whole number belongs here."),

@@ -10,6 +10,9 @@ pub mod dialect;
 
 pub mod files;
 
+#[cfg(feature = "compressed")]
+mod unpack;
+
 pub mod sources;
 
 pub mod directive;

@@ -9,6 +9,7 @@ use crate::diagnostic::Severity;
 use crate::diagnostic::Sink;
 use crate::dialect::Dialect;
 use crate::files::Files;
+use crate::files::is_outside;
 use crate::model::Scene;
 use crate::model::SceneFile;
 use crate::parse;
@@ -17,6 +18,8 @@ use crate::similar::similar_file;
 use crate::sources::Sources;
 use crate::span::FileId;
 use crate::span::Span;
+#[cfg(feature = "compressed")]
+use crate::unpack;
 use std::collections::HashMap;
 use std::io;
 use std::path::Path;
@@ -54,14 +57,30 @@ pub struct Loaded {
 /// Reads the file at `path` and all that it includes. Everything that is wrong, be it that the file cannot be read,
 /// is told in the diagnostics.
 pub fn load(path: &Path, files: &dyn Files, options: &LoadOptions) -> Loaded {
-    match files.read_at_most(path, options.limits.max_file_bytes) {
+    let limit = options.limits.max_file_bytes;
+    match files.read_asked_for(path, limit).and_then(|bytes| unpacked(bytes, limit)) {
         Ok(bytes) => load_bytes(path.to_owned(), bytes, files, options),
-        Err(fault) => {
-            let mut loader = Loader::new(files, options, options.dialect.unwrap_or_default());
-            loader.cannot_read(path, &fault);
-            loader.finish()
-        }
+        Err(fault) => not_loaded(path, &fault, files, options),
     }
+}
+
+/// What there is to say where the file asked for cannot be read.
+fn not_loaded(path: &Path, fault: &io::Error, files: &dyn Files, options: &LoadOptions) -> Loaded {
+    let mut loader = Loader::new(files, options, options.dialect.unwrap_or_default());
+    loader.cannot_read(path, fault);
+    loader.finish()
+}
+
+/// A scene's text, which may be compressed.
+#[cfg(feature = "compressed")]
+fn unpacked(bytes: Vec<u8>, limit: u64) -> io::Result<Vec<u8>> {
+    unpack::unpacked(bytes, limit)
+}
+
+/// A scene's text; what is compressed is told as binary data.
+#[cfg(not(feature = "compressed"))]
+fn unpacked(bytes: Vec<u8>, _: u64) -> io::Result<Vec<u8>> {
+    Ok(bytes)
 }
 
 /// Reads as slides first, so that a slides file is never taken for another and costs no second look. Only a file that
@@ -106,7 +125,10 @@ fn load_bytes(path: PathBuf, bytes: Vec<u8>, files: &dyn Files, options: &LoadOp
 /// assert_eq!(scene.files[0].spheres.shapes.len(), 1);
 /// ```
 pub fn load_text(name: &str, text: impl Into<Vec<u8>>, files: &dyn Files, options: &LoadOptions) -> Loaded {
-    load_bytes(PathBuf::from(name), text.into(), files, options)
+    match unpacked(text.into(), options.limits.max_file_bytes) {
+        Ok(bytes) => load_bytes(PathBuf::from(name), bytes, files, options),
+        Err(fault) => not_loaded(Path::new(name), &fault, files, options),
+    }
 }
 
 /// How a file came to be read.
@@ -179,7 +201,7 @@ impl<'a> Loader<'a> {
                 if seen.contains(&identity) {
                     break;
                 }
-                let Ok(bytes) = self.files.read_at_most(&path, self.options.limits.max_file_bytes) else {
+                let Ok(bytes) = self.read(&path) else {
                     continue;
                 };
                 seen.push(identity);
@@ -250,21 +272,25 @@ impl<'a> Loader<'a> {
             self.candidates(self.sources.path(span.file), name, self.dialect.conventions().lenient);
         let usual = self.candidates(self.sources.path(span.file), name, false).len();
         let depth = self.reached.get(span.file.0 as usize).map_or(0, |reached| reached.depth) + 1;
-        let Limits { max_file_bytes, max_include_depth, max_includes, .. } = self.options.limits;
+        let Limits { max_include_depth, max_includes, .. } = self.options.limits;
         let mut tried = Vec::new();
         for path in candidates {
             if let Some(known) = self.known.get(&self.files.identity(&path)) {
                 return Some(*known);
             }
             if depth > max_include_depth || self.reached.len() >= max_includes {
-                let message = match depth > max_include_depth {
-                    true => format!("files include each other more than {max_include_depth} deep"),
-                    false => format!("the scene has more than {max_includes} files"),
+                let (message, option) = match depth > max_include_depth {
+                    true => {
+                        let message = format!("files include each other more than {max_include_depth} deep");
+                        (message, "--max-include-depth")
+                    }
+                    false => (format!("the scene has more than {max_includes} files"), "--max-includes"),
                 };
-                self.sink.error(Diagnostic::error("include-limit", message).at(span).label("is not read"));
+                let error = Diagnostic::error("include-limit", message).at(span).label("is not read");
+                self.sink.error(error.help(format!("`{option} N` allows more")));
                 return None;
             }
-            match self.files.read_at_most(&path, max_file_bytes) {
+            match self.read(&path) {
                 Ok(bytes) => {
                     if tried.len() >= usual {
                         self.found_elsewhere(name, &path, span);
@@ -274,8 +300,17 @@ impl<'a> Loader<'a> {
                 Err(fault) => tried.push((path, fault)),
             }
         }
+        // That the further places lie outside is no news.
+        let is_news =
+            |(number, (_, fault)): &(usize, (PathBuf, io::Error))| *number == 0 || !is_outside(fault);
+        let tried: Vec<_> = tried.into_iter().enumerate().filter(is_news).map(|(_, tried)| tried).collect();
         self.sink.error(self.not_found(name, span, &tried));
         None
+    }
+
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let limit = self.options.limits.max_file_bytes;
+        self.files.read_at_most(path, limit).and_then(|bytes| unpacked(bytes, limit))
     }
 
     fn found_elsewhere(&mut self, name: &str, path: &Path, span: Span) {
@@ -422,5 +457,5 @@ fn shrink(file: &mut SceneFile) {
 
 fn too_large_error(path: &Path, limits: &Limits) -> Diagnostic {
     let message = format!("`{}` is larger than {} bytes", path.display(), limits.max_file_bytes);
-    Diagnostic::error("file-too-large", message)
+    Diagnostic::error("file-too-large", message).help("`--max-file-size BYTES` allows more")
 }

@@ -47,6 +47,8 @@ pub struct Limits {
     pub max_includes: usize,
     /// How many shapes one file may have.
     pub max_shapes: u32,
+    /// How deep groups may nest in one file.
+    pub max_nesting: usize,
     /// How many errors are told.
     pub max_errors: usize,
     /// How many warnings of each kind are told; the rest is counted.
@@ -60,6 +62,7 @@ impl Default for Limits {
             max_include_depth: 64,
             max_includes: 4096,
             max_shapes: u32::MAX - 1,
+            max_nesting: 1 << 20,
             max_errors: 20,
             max_warnings_of_a_kind: 5,
         }

@@ -88,6 +88,7 @@ fn expectations(text: &str) -> Wanted {
                 "max_file_bytes" => options.limits.max_file_bytes = u64::from(value),
                 "max_include_depth" => options.limits.max_include_depth = value as usize,
                 "max_includes" => options.limits.max_includes = value as usize,
+                "max_nesting" => options.limits.max_nesting = value as usize,
                 _ => panic!("unknown limit {limit}"),
             }
             continue;

@@ -42,6 +42,7 @@ fn given(example: &Example, text: &str) -> BTreeSet<&'static str> {
             "max_errors" => options.limits.max_errors = value as usize,
             "max_file_bytes" => options.limits.max_file_bytes = u64::from(value),
             "max_includes" => options.limits.max_includes = value as usize,
+            "max_nesting" => options.limits.max_nesting = value as usize,
             "max_shapes" => options.limits.max_shapes = value,
             _ => panic!("unknown limit {name}"),
         }

@@ -2,15 +2,23 @@
 
 use super::rust::root;
 
-const FLOORS: [&str; 6] =
-    ["dotray-geometry", "dotray-image", "dotray-accel", "dotray-scene", "dotray-render", "dotray-grade"];
-const EVERYTHING: [&str; 7] = [
+const FLOORS: [&str; 7] = [
     "dotray-geometry",
     "dotray-image",
     "dotray-accel",
     "dotray-scene",
     "dotray-render",
     "dotray-grade",
+    "dotray-lsp",
+];
+const EVERYTHING: [&str; 8] = [
+    "dotray-geometry",
+    "dotray-image",
+    "dotray-accel",
+    "dotray-scene",
+    "dotray-render",
+    "dotray-grade",
+    "dotray-lsp",
     "dotray",
 ];
 
@@ -21,6 +29,7 @@ fn allowed(member: &str) -> Option<&'static [&'static str]> {
         "dotray-accel" | "dotray-scene" => &FLOORS[..1],
         "dotray-render" => &FLOORS[..4],
         "dotray-grade" => &FLOORS[..5],
+        "dotray-lsp" => &["dotray-scene"],
         "dotray" | "dotray-viewer" | "dotray-python" => &FLOORS,
         "dotray-tests" | "dotray-xtask" | "xtask" => &EVERYTHING,
         _ => return None,

@@ -1,11 +1,14 @@
 //! No input crashes, hangs or fills memory: scenes cut off at every byte, and with bytes changed at random.
 
+use super::bytes::Random;
+use super::bytes::changed;
 use dotray_accel::Kind;
 use dotray_render::Options;
 use dotray_tests::corpus;
 use dotray_tests::pictures;
 use std::sync::mpsc;
 use std::time::Duration;
+use std::time::Instant;
 
 /// What one input may take, on a loaded machine.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -18,6 +21,15 @@ const SCENES: [&str; 6] = [
     "light_area.ray",
     "bump_shapes.ray",
     "group_shear.ray",
+];
+
+/// Small scenes of every dialect.
+const DIALECTS: [&str; 5] = [
+    "../../scenes/dialects/table-uva.ray",
+    "../../scenes/dialects/table-jhu.ray",
+    "../../scenes/dialects/ring-jhu.ray",
+    "../../scenes/dialects/pipes-hmc.ray",
+    "../../scenes/dialects/blocks-unisa.scene",
 ];
 
 fn text_of(scene: &str) -> Vec<u8> {
@@ -70,7 +82,7 @@ fn all_survive(name: &'static str, inputs: Vec<Vec<u8>>) -> usize {
 
 #[test]
 fn scenes_cut_off_at_every_byte_survive() {
-    for name in SCENES {
+    for name in SCENES.into_iter().chain(DIALECTS) {
         let text = text_of(name);
         let step = text.len().div_ceil(2500);
         let inputs: Vec<Vec<u8>> = (0..text.len()).step_by(step).map(|end| text[..end].to_vec()).collect();
@@ -81,74 +93,10 @@ fn scenes_cut_off_at_every_byte_survive() {
     }
 }
 
-/// Xorshift: the same inputs in every run.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % end.max(1) as u64) as usize
-    }
-}
-
-/// Words that mean trouble.
-const TROUBLE: [&str; 16] = [
-    "nan",
-    "-inf",
-    "1e308",
-    "-1e308",
-    "1e-320",
-    "0",
-    "-1",
-    "99999999999999999999",
-    "#group_end",
-    "#group_begin",
-    "!",
-    "\"",
-    "/*",
-    "#",
-    "1e400",
-    "4294967296",
-];
-
-/// Changes a few bytes or words.
-fn changed(text: &[u8], random: &mut Random) -> Vec<u8> {
-    let mut text = text.to_vec();
-    for _ in 0..=random.below(3) {
-        let at = random.below(text.len());
-        match random.below(6) {
-            0 => text[at] = random.below(256) as u8,
-            1 => text[at] ^= 1 << random.below(8),
-            2 => {
-                text.remove(at);
-            }
-            3 => text.insert(at, b"0123456789.-+e#! \n"[random.below(18)]),
-            4 => {
-                let end = (at + random.below(60)).min(text.len());
-                let copy = text[at..end].to_vec();
-                text.splice(at..at, copy);
-            }
-            _ => {
-                // A whole word makes place for one that means trouble.
-                let blank = |byte: &u8| byte.is_ascii_whitespace();
-                let start = text[..at].iter().rposition(blank).map_or(0, |found| found + 1);
-                let end = text[at..].iter().position(blank).map_or(text.len(), |found| at + found);
-                text.splice(start..end, TROUBLE[random.below(TROUBLE.len())].bytes());
-            }
-        }
-        if text.is_empty() {
-            break;
-        }
-    }
-    text
-}
-
 #[test]
 fn scenes_with_random_changes_survive() {
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
-    for name in SCENES {
+    let mut random = Random::new(0x9e37_79b9_7f4a_7c15);
+    for name in SCENES.into_iter().chain(DIALECTS) {
         let text = text_of(name);
         let inputs: Vec<Vec<u8>> = (0..1500).map(|_| changed(&text, &mut random)).collect();
         let rendered = all_survive(name, inputs);
@@ -159,7 +107,69 @@ fn scenes_with_random_changes_survive() {
 
 #[test]
 fn bytes_that_are_no_scene_survive() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let inputs = (0..2000).map(|i| (0..i % 200).map(|_| random.below(256) as u8).collect()).collect();
     all_survive("noise", inputs);
+}
+
+/// The most memory that this process has held so far.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+}
+
+#[test]
+fn lines_of_a_million_words_survive() {
+    const WORDS: usize = 1_000_000;
+    const OPEN: &str = "#group_begin 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ";
+    let begin = "#camera 0 0 9 0 0 -1 0 1 0 .4 #light_dir 1 1 1 0 0 -1 ";
+    let line = |words: &str| {
+        let count = WORDS.div_ceil(words.split_whitespace().count());
+        format!("{begin}{}", words.repeat(count)).into_bytes()
+    };
+    let nested =
+        |end: &str| format!("{begin}{}#shape_sphere -1 0 0 0 1 {}", OPEN.repeat(60_000), end.repeat(60_000));
+    let inputs: Vec<(bool, Vec<u8>)> = vec![
+        (true, line("#shape_sphere -1 0 0 0 1 ")),
+        (true, line("#shape_box -1 0 0 0 1 1 1 ")),
+        (true, line("#light_point .1 .1 .1 0 0 5 1 0 0 ")),
+        (true, line(&format!("{OPEN}#shape_sphere -1 0 0 0 1 #group_end "))),
+        (true, nested("#group_end ").into_bytes()),
+        (false, nested(" ").into_bytes()),
+        (false, line(OPEN)),
+        (false, line("#group_end ")),
+        (false, line("#ambient ")),
+        (false, line("#wrong ")),
+        (false, line("1 ")),
+        (false, line("1e308 -1e308 ")),
+        (false, line("#sphere 1 1 1 ")),
+        (false, line("#cylinder #cone #torus #material ")),
+        (false, line("#ray_file nowhere ")),
+        (false, line("#texture nowhere.png ")),
+        (false, line("#material 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1 -1 !a! #shape_sphere 99999 0 0 0 1 ")),
+        (false, format!("{begin}#ambient {} 1 1", "1".repeat(WORDS)).into_bytes()),
+        (false, format!("{begin}#{}", "a".repeat(WORDS)).into_bytes()),
+        (false, format!("{begin}#texture \"{}\"", "a ".repeat(WORDS)).into_bytes()),
+        (false, format!("{begin}/* {}", "* / ".repeat(WORDS)).into_bytes()),
+        (true, format!("{begin}#shape_sphere -1 0 0 0 1 /* {} */", "words ".repeat(WORDS)).into_bytes()),
+        (
+            true,
+            format!(
+                "{begin}#shape_sphere 0 0 0 0 1 #material 0 0 0 1 1 1 0 0 0 0 0 0 0 0 1 -1 !{}!",
+                "a ".repeat(WORDS)
+            )
+            .into_bytes(),
+        ),
+    ];
+    for (sound, input) in inputs {
+        let start: String = String::from_utf8_lossy(&input[begin.len()..]).chars().take(60).collect();
+        let before = Instant::now();
+        let rendered = all_survive("words.ray", vec![input]);
+        println!("{start}…: {:?}", before.elapsed());
+        assert_eq!(rendered == 1, sound, "{start}…");
+    }
+    if let Some(peak) = peak_memory() {
+        assert!(peak < 3 << 30, "{peak} bytes were held");
+    }
 }

@@ -5,12 +5,10 @@ use dotray_render::Options;
 use dotray_scene::Files;
 use dotray_scene::Scene;
 use dotray_scene::files::Disk;
-use dotray_scene::model::SceneFile;
-use dotray_scene::span::PackedStarts;
-use dotray_scene::span::Span;
 use dotray_scene::write::write;
 use dotray_tests::corpus;
 use dotray_tests::pictures;
+use dotray_tests::targets::without_places;
 use std::collections::HashMap;
 use std::io;
 use std::path::Path;
@@ -29,39 +27,6 @@ impl Files for Rewritten {
 
     fn identity(&self, path: &Path) -> PathBuf {
         Disk.identity(path)
-    }
-}
-
-/// The scene without places in its text.
-fn without_places(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    for file in &mut scene.files {
-        clear(file);
-    }
-    scene
-}
-
-fn clear(file: &mut SceneFile) {
-    let nowhere = Span::default();
-    file.camera.iter_mut().for_each(|camera| camera.span = nowhere);
-    file.background.iter_mut().for_each(|color| color.span = nowhere);
-    file.ambient.iter_mut().for_each(|color| color.span = nowhere);
-    file.lights.iter_mut().for_each(|light| light.span = nowhere);
-    file.textures.iter_mut().for_each(|texture| texture.span = nowhere);
-    file.materials.iter_mut().for_each(|material| material.span = nowhere);
-    file.includes.iter_mut().for_each(|include| include.span = nowhere);
-    file.groups.iter_mut().for_each(|group| group.span = nowhere);
-    for starts in [
-        &mut file.spheres.starts,
-        &mut file.cuboids.starts,
-        &mut file.cylinders.starts,
-        &mut file.cones.starts,
-        &mut file.triangles.starts,
-        &mut file.indexed_triangles.starts,
-        &mut file.tori.starts,
-        &mut file.open_sides.starts,
-    ] {
-        *starts = PackedStarts::default();
     }
 }
 

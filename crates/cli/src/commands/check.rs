@@ -5,13 +5,12 @@ use dotray::scene::Files;
 use dotray::scene::codes::all_codes;
 use dotray::scene::codes::explain;
 use dotray::scene::context::name_groups;
-use dotray::scene::files::Disk;
 use dotray::scene::lint::lint;
 use dotray::scene::load::LoadOptions;
 use dotray::scene::load::Loaded;
 use dotray::scene::load::load;
 use dotray::scene::load::load_text;
-use dotray::scene::resolve::resolve;
+use dotray::scene::resolve::resolve_within;
 use dotray::scene::similar::near_names;
 use dotray::scene::sources::Sources;
 use dotray::scene::span::FileId;
@@ -31,8 +30,12 @@ use crate::findings::github;
 use crate::findings::json;
 use crate::findings::sarif;
 use crate::input::standard_input;
+use crate::limits::load_limits;
+use crate::limits::reachable;
+use crate::limits::resolve_limits;
 use crate::meaning::Place;
 use crate::messages::wants_color;
+use crate::reading_args::LimitArgs;
 use crate::scenes::Asked;
 use crate::scenes::expand;
 use crate::textures::Textures;
@@ -45,9 +48,12 @@ pub fn run(typed: &CheckArgs, color: When) -> Result<(), Failure> {
         return put(explained(code)?.as_bytes());
     }
     let color = typed.format == CheckFormat::Text && wants_color(color, io::stdout().is_terminal());
-    let mut textures = Textures::default();
-    let checked: Result<Vec<Checked>, Failure> =
-        expand(&typed.files).iter().map(|asked| Checked::new(asked, &mut textures, color)).collect();
+    let disk = reachable(&typed.limits)?;
+    let mut textures = Textures::new(&*disk);
+    let checked: Result<Vec<Checked>, Failure> = expand(&typed.files)
+        .iter()
+        .map(|asked| Checked::new(asked, &typed.limits, &*disk, &mut textures, color))
+        .collect();
     let report = gather(checked?);
     let text = match typed.format {
         CheckFormat::Text => report.text(),
@@ -68,22 +74,28 @@ struct Checked {
 }
 
 impl Checked {
-    fn new(asked: &Asked, textures: &mut Textures, color: bool) -> Result<Self, Failure> {
-        let options = LoadOptions::default();
+    fn new(
+        asked: &Asked,
+        limits: &LimitArgs,
+        disk: &dyn Files,
+        textures: &mut Textures<'_>,
+        color: bool,
+    ) -> Result<Self, Failure> {
+        let options = LoadOptions { limits: load_limits(limits), ..LoadOptions::default() };
         let (name, loaded) = match asked {
-            Asked::Scene(Place::File(path)) => (path.clone(), load(path, &Disk, &options)),
+            Asked::Scene(Place::File(path)) => (path.clone(), load(path, disk, &options)),
             Asked::Scene(Place::Standard) => {
                 let text = standard_input(options.limits.max_file_bytes)
                     .map_err(|error| Failure::Failed(format!("cannot read standard input: {error}")))?;
-                (PathBuf::from(STANDARD), load_text(STANDARD, text, &Disk, &options))
+                (PathBuf::from(STANDARD), load_text(STANDARD, text, disk, &options))
             }
             Asked::Nothing(folder) => return Ok(Self::nothing(folder, color)),
         };
-        let (diagnostics, sources) = look_over(loaded, textures);
+        let (diagnostics, sources) = look_over(loaded, limits, textures);
         let scene = name.display().to_string();
         let findings = diagnostics.iter().map(|found| Finding::new(found, &sources, &scene, color)).collect();
         let numbers = 0..u32::try_from(sources.len()).unwrap_or(u32::MAX);
-        let files = numbers.map(|number| Disk.identity(sources.path(FileId(number)))).collect();
+        let files = numbers.map(|number| disk.identity(sources.path(FileId(number)))).collect();
         Ok(Self { files, findings })
     }
 
@@ -98,9 +110,9 @@ impl Checked {
 const STANDARD: &str = "<stdin>";
 
 /// All that there is to say about a scene, in the order of its files and places.
-fn look_over(loaded: Loaded, textures: &mut Textures) -> (Vec<Diagnostic>, Sources) {
+fn look_over(loaded: Loaded, limits: &LimitArgs, textures: &mut Textures<'_>) -> (Vec<Diagnostic>, Sources) {
     let Loaded { scene, mut diagnostics, sources, .. } = loaded;
-    let outcome = scene.map(resolve);
+    let outcome = scene.map(|scene| resolve_within(scene, &resolve_limits(limits)));
     let mut resolved = None;
     if let Some(outcome) = outcome {
         diagnostics.extend(outcome.diagnostics);

@@ -73,7 +73,7 @@ fn write(image: &Image, (place, format): &(Place, Format)) -> Result<(), Failure
 fn read(path: &Path) -> Result<(Image, bool), Failure> {
     let limits = Limits::default();
     let bytes =
-        Disk.read_at_most(path, limits.max_bytes).map_err(|error| Failure::file("read", path, &error))?;
+        Disk.read_asked_for(path, limits.max_bytes).map_err(|error| Failure::file("read", path, &error))?;
     let hint = Format::from_path(path).ok();
     let image = decode(&bytes, hint, &limits).map_err(|error| Failure::file("read", path, &error))?;
     Ok((image, Format::sniff(&bytes).or(hint).is_some_and(Format::is_float)))

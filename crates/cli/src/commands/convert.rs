@@ -5,7 +5,7 @@ use dotray::scene::Dialect;
 use dotray::scene::convert::ConvertError;
 use dotray::scene::convert::convert;
 use dotray::scene::model::SceneFile;
-use dotray::scene::resolve::resolve;
+use dotray::scene::resolve::resolve_within;
 use std::fs;
 use std::path::Path;
 use std::path::PathBuf;
@@ -16,6 +16,7 @@ use crate::exit::put;
 use crate::exit::say;
 use crate::input::Written;
 use crate::input::read;
+use crate::limits::resolve_limits;
 use crate::meaning::Place;
 use crate::messages::Messages;
 use crate::output;
@@ -30,11 +31,11 @@ pub fn run(typed: &ConvertArgs, color: When) -> Result<(), Failure> {
         output::check(&out, &input)?;
     }
     let messages = Messages::new(color, false);
-    let reading = ReadingArgs { dialect: typed.from };
-    let Written { scene, warnings, sources, .. } = read(&input, reading, messages)?;
+    let reading = ReadingArgs { dialect: typed.from, limits: typed.limits.clone() };
+    let Written { scene, warnings, sources, .. } = read(&input, &reading, messages)?;
     messages.print(&warnings, &sources);
     // What is wrong with the scene as a whole is told before a file of it stands there.
-    let faults = resolve(scene.clone());
+    let faults = resolve_within(scene.clone(), &resolve_limits(&typed.limits));
     if faults.resolved.is_none() {
         messages.print(&faults.diagnostics, &sources);
         return Err(Failure::Reported);

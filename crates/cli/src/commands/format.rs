@@ -3,7 +3,6 @@
 use dotray::image::write_file;
 use dotray::scene::Files;
 use dotray::scene::Severity;
-use dotray::scene::files::Disk;
 use dotray::scene::format::format_text;
 use dotray::scene::format::is_structural;
 use dotray::scene::format::says_the_same;
@@ -20,8 +19,11 @@ use crate::exit::Failure;
 use crate::exit::put;
 use crate::exit::say;
 use crate::input::standard_input;
+use crate::limits::load_limits;
+use crate::limits::reachable;
 use crate::meaning::Place;
 use crate::messages::Messages;
+use crate::reading_args::LimitArgs;
 use crate::scenes::Asked;
 use crate::scenes::expand;
 use crate::values::When;
@@ -52,8 +54,8 @@ pub fn run(typed: &FormatArgs, color: When) -> Result<(), Failure> {
 
 /// Formats one file; false where it is at fault or, where it is only checked, would change.
 fn one(place: &Place, typed: &FormatArgs, messages: Messages) -> Result<bool, Failure> {
-    let (name, old) = read(place)?;
-    let Some(Layout { old, new }) = layout(&name, old, messages)? else { return Ok(false) };
+    let (name, old) = read(place, &typed.limits)?;
+    let Some(Layout { old, new }) = layout(&name, old, &typed.limits, messages)? else { return Ok(false) };
     let changes = old != new;
     match place {
         Place::File(_) | Place::Standard if typed.check => {
@@ -74,11 +76,12 @@ fn one(place: &Place, typed: &FormatArgs, messages: Messages) -> Result<bool, Fa
     }
 }
 
-fn read(place: &Place) -> Result<(PathBuf, Vec<u8>), Failure> {
-    let most = LoadOptions::default().limits.max_file_bytes;
+fn read(place: &Place, limits: &LimitArgs) -> Result<(PathBuf, Vec<u8>), Failure> {
+    let most = load_limits(limits).max_file_bytes;
     match place {
         Place::File(path) => {
-            let text = Disk.read_at_most(path, most).map_err(|error| Failure::file("read", path, &error))?;
+            let disk = reachable(limits)?;
+            let text = disk.read_at_most(path, most).map_err(|error| Failure::file("read", path, &error))?;
             Ok((path.clone(), text))
         }
         Place::Standard => {
@@ -96,8 +99,14 @@ struct Layout {
 }
 
 /// The text and its layout; `None` where the file has faults that leave its layout open, which are printed.
-fn layout(name: &Path, text: Vec<u8>, messages: Messages) -> Result<Option<Layout>, Failure> {
-    let loaded = load_text(&name.display().to_string(), text, &Nothing, &LoadOptions::default());
+fn layout(
+    name: &Path,
+    text: Vec<u8>,
+    limits: &LimitArgs,
+    messages: Messages,
+) -> Result<Option<Layout>, Failure> {
+    let options = LoadOptions { limits: load_limits(limits), ..LoadOptions::default() };
+    let loaded = load_text(&name.display().to_string(), text, &Nothing, &options);
     let structural = |code: &str| is_structural(code) && code != "cannot-read";
     let mut faults = loaded.diagnostics;
     let stopped = faults.iter().any(|fault| fault.code == "too-many-errors");

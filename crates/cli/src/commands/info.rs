@@ -17,7 +17,7 @@ use crate::values::When;
 
 /// Prints the scene in numbers.
 pub fn run(typed: &InfoArgs, color: When) -> Result<(), Failure> {
-    let understood = understand(&Place::of(&typed.scene), typed.reading, Messages::new(color, false))?;
+    let understood = understand(&Place::of(&typed.scene), &typed.reading, Messages::new(color, false))?;
     let summary = summarize(&understood.resolved);
     match typed.format {
         TextOrJson::Text => put(summary.to_string().as_bytes()),

@@ -1,9 +1,10 @@
 //! `dotray render`: from a scene to a picture.
 
-use dotray::image::encode;
 use dotray::render::Rendering;
+use dotray::render::Textures;
 use dotray::render::World;
 use dotray::render::render;
+use dotray::scene::sources::Sources;
 use std::time::Instant;
 
 use crate::cost::Cost;
@@ -13,10 +14,14 @@ use crate::cost::memory;
 use crate::exit::Failure;
 use crate::exit::put;
 use crate::exit::say;
+use crate::extras::Encoded;
+use crate::extras::Extras;
+use crate::extras::encoded;
 use crate::input;
 use crate::input::Understood;
 use crate::input::understand;
 use crate::interrupt;
+use crate::limits;
 use crate::meaning::Place;
 use crate::messages::Messages;
 use crate::output;
@@ -38,17 +43,23 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     interrupt::watch();
     let messages = Messages::new(color, plan.quiet);
     let Understood { mut resolved, sources, disk, text_bytes, mut seconds } =
-        understand(&plan.input, typed.reading, messages)?;
+        understand(&plan.input, &typed.reading, messages)?;
     interrupt::check()?;
     if typed.missing_texture == MissingTexture::White {
-        input::whiten(&mut resolved, plan.quiet);
+        input::whiten(&mut resolved, &disk, plan.quiet);
     }
-    let world = World::prepare(resolved, &disk, &plan.prepare).map_err(|faults| {
+    let extras = Extras::new(&plan, &mut resolved, &sources)?;
+    limits::check(&resolved, &plan.prepare, Some(&plan.options), &typed.reading.limits)?;
+    let textures = Textures::load(&resolved, &disk, &plan.prepare).map_err(|faults| {
         messages.print(&faults, &sources);
         Failure::Reported
     })?;
-    // Nothing can be said about the text any more, and rays may want the memory.
+    // Nothing can be said of a place in the text any more, and the tree may want the memory.
     drop(sources);
+    let world = World::build(resolved, textures, &plan.prepare).map_err(|faults| {
+        messages.print(&faults, &Sources::default());
+        Failure::Reported
+    })?;
     interrupt::check()?;
 
     let Rendering { image, stats, complete } = trace(&world, &plan)?;
@@ -57,11 +68,15 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     }
     seconds.extend(&stats.seconds);
     let encoding = Instant::now();
-    let bytes = encode(&image, plan.format, &plan.encode)?;
+    let image = extras.apply(image, &world, &plan)?;
+    let Encoded { picture, layers } = encoded(&image, &world, &plan)?;
     seconds.push(("encode", encoding.elapsed().as_secs_f64()));
     interrupt::check()?;
     let writing = Instant::now();
-    output::write(&plan.output, &bytes)?;
+    output::write(&plan.output, &picture)?;
+    for (path, bytes) in layers {
+        output::write(&Place::File(path), &bytes)?;
+    }
     seconds.push(("write", writing.elapsed().as_secs_f64()));
     seconds.push(("total", start.elapsed().as_secs_f64()));
 

@@ -135,6 +135,18 @@ pub const EXPLANATIONS: &[Explanation] = &[
         "#light_num -1",
         "#light_num 1",
     ),
+    with_limit(
+        explained(
+            "nesting-limit",
+            "Groups are nested deeper than the limit, which no scene made by people comes near: a program that writes \
+             scenes has probably forgotten its `#group_end`.",
+            "#group_begin 1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1\n\
+             #group_begin 1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1\n#group_end\n#group_end",
+            "",
+        ),
+        "max_nesting",
+        1,
+    ),
     explained(
         "not-a-number",
         "A decimal, finite number belongs here, such as `3`, `-1`, `.523`, `+2.` or `1e-3`. The decimal sign is the \

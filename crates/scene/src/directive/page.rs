@@ -28,6 +28,7 @@ A `.ray` file describes a scene for a ray tracer: a camera, lights, materials, a
 - Comments run from `//` to the end of the line, or from `/*` to `*/`. They may stand wherever a word may begin.
 - Directives are written in lower case; other letters are accepted with a warning. A UTF-8 byte order mark and
   Windows line ends are accepted.
+- A file may be compressed with gzip or Zstandard, which its first bytes tell, whatever its name.
 - Lengths are in the scene's own units, angles in radians, colours from 0 to 1 (more is allowed).
 
 ## Rules
@@ -40,7 +41,7 @@ A `.ray` file describes a scene for a ray tracer: a camera, lights, materials, a
 - Without a camera, one is made that looks down -z and frames the scene. Without `#background` or `#ambient` they are
   black.
 - A group's matrix stands row by row and acts on column vectors, so the shift stands at the end of the first three rows.
-  Its last row is `0 0 0 1`; a singular matrix is an error. Groups may be nested to any depth; a shape is moved by all
+  Its last row is `0 0 0 1`; a singular matrix is an error. Groups may be nested a million deep; a shape is moved by all
   groups around it, the innermost first. Shapes outside of groups are not moved.
 - A shape of no extent (radius or height not above 0, an edge below 0 or two of 0, a triangle of no area) is left out
   with a warning. A direction of length 0 is an error.

@@ -31,6 +31,13 @@ impl Parser<'_> {
     }
 
     pub(super) fn open_group(&mut self, matrix: Placed<Mat4>) {
+        if self.open.len() == self.limits.max_nesting {
+            let message = format!("groups are nested more than {} deep", self.limits.max_nesting);
+            let error = Diagnostic::error("nesting-limit", message).at(matrix.span);
+            self.sink.error(error.label("the first one too deep").help("`--max-nesting N` allows more"));
+            self.stopped = true;
+            return;
+        }
         // A directive takes more than one byte and a file at most 2^32 of them.
         let number = self.scene.groups.len() as u32;
         self.scene.groups.push(matrix);

@@ -173,8 +173,8 @@ impl Parser<'_> {
     fn too_many_shapes(&mut self) {
         let message = format!("there are more than {} shapes", self.limits.max_shapes);
         let span = self.call_span();
-        self.sink
-            .error(Diagnostic::error("too-many-shapes", message).at(span).label("the first one too many"));
+        let error = Diagnostic::error("too-many-shapes", message).at(span).label("the first one too many");
+        self.sink.error(error.help("`--max-shapes N` allows more"));
         // All that follows would be too many as well.
         self.stopped = true;
     }

@@ -1,0 +1,105 @@
+//! What a picture gets besides its colours: what lies behind, beside and over it.
+
+use dotray::Image;
+use dotray::image::Format;
+use dotray::image::encode;
+use dotray::image::encode_exr_layers;
+use dotray::render::LayerPicture;
+use dotray::render::World;
+use dotray::render::render_layers;
+use dotray::scene::Resolved;
+use dotray::scene::Sources;
+use std::path::PathBuf;
+
+use crate::background;
+use crate::exit::Failure;
+use crate::layer_args::Background;
+use crate::layer_args::Overlay;
+use crate::layers;
+use crate::meaning::Place;
+use crate::output;
+use crate::overlay;
+use crate::overlay::Wire;
+use crate::plan::Plan;
+use crate::progress::Watcher;
+use crate::tree::Tree;
+
+/// What must be known before the scene is baked.
+pub struct Extras {
+    back: Option<Image>,
+    wires: Vec<Wire>,
+}
+
+impl Extras {
+    /// Puts the background into the scene, reads its picture, and finds the boxes that are to be drawn.
+    pub fn new(plan: &Plan, resolved: &mut Resolved, sources: &Sources) -> Result<Self, Failure> {
+        let back = match &plan.background {
+            None | Some(Background::Transparent) => None,
+            Some(Background::Color(color)) => {
+                (resolved.background, resolved.secondary_background) = (*color, *color);
+                None
+            }
+            Some(Background::Image(path)) => Some(background::load(path, &plan.prepare.image_limits)?),
+        };
+        for path in layer_paths(plan) {
+            output::check(&Place::File(path), &plan.input)?;
+        }
+        let wires = match plan.overlay {
+            None => Vec::new(),
+            Some(Overlay::Bounds) => overlay::group_wires(&Tree::new(resolved, sources)),
+        };
+        Ok(Self { back, wires })
+    }
+
+    /// The picture with what lies behind and over it.
+    pub fn apply(&self, image: Image, world: &World, plan: &Plan) -> Result<Image, Failure> {
+        let mut image = match &self.back {
+            Some(back) => background::composed(&image, back, &plan.options)?,
+            None => image,
+        };
+        overlay::draw(&mut image, &self.wires, world.camera(), &plan.options);
+        Ok(image)
+    }
+}
+
+/// The files of the layers that do not go into the picture's own.
+fn layer_paths(plan: &Plan) -> Vec<PathBuf> {
+    match (&plan.output, plan.format) {
+        (Place::File(path), format) if format != Format::Exr => {
+            plan.layers.iter().map(|&layer| layers::path_of(path, layer)).collect()
+        }
+        (Place::File(_) | Place::Standard, _) => Vec::new(),
+    }
+}
+
+/// The bytes of the picture's file, and those of further files.
+pub struct Encoded {
+    /// The picture.
+    pub picture: Vec<u8>,
+    /// Its layers, if they have files of their own.
+    pub layers: Vec<(PathBuf, Vec<u8>)>,
+}
+
+/// Computes the layers and encodes everything.
+pub fn encoded(image: &Image, world: &World, plan: &Plan) -> Result<Encoded, Failure> {
+    let layers = layers_of(world, plan)?;
+    if plan.format == Format::Exr && !layers.is_empty() {
+        let picture = encode_exr_layers(image, layers::channels(layers))?;
+        return Ok(Encoded { picture, layers: Vec::new() });
+    }
+    let picture = encode(image, plan.format, &plan.encode)?;
+    let file = |(path, layer): (PathBuf, &LayerPicture)| Ok((path, layers::png(layer)?));
+    let layers = layer_paths(plan).into_iter().zip(&layers).map(file).collect::<Result<Vec<_>, Failure>>()?;
+    Ok(Encoded { picture, layers })
+}
+
+fn layers_of(world: &World, plan: &Plan) -> Result<Vec<LayerPicture>, Failure> {
+    if plan.layers.is_empty() {
+        return Ok(Vec::new());
+    }
+    let window = plan.options.window();
+    let watcher = Watcher::new(u64::from(window.width) * u64::from(window.height), plan.quiet);
+    let layers = render_layers(world, &plan.options, &plan.layers, &watcher);
+    watcher.finish();
+    layers?.ok_or(Failure::Interrupted)
+}

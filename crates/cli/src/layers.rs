@@ -1,0 +1,152 @@
+//! Layers as files: channels of an OpenEXR picture, or pictures that people can read.
+
+use colorous::Gradient;
+use dotray::Image;
+use dotray::image::Channels;
+use dotray::image::EncodeOptions;
+use dotray::image::Format;
+use dotray::image::ImageError;
+use dotray::image::NamedChannel;
+use dotray::image::encode;
+use dotray::render::Layer;
+use dotray::render::LayerPicture;
+use dotray::scene::number::General;
+use font8x8::UnicodeFonts;
+use std::path::Path;
+use std::path::PathBuf;
+
+/// The channels `layer.channel` of an OpenEXR file.
+pub fn channels(layers: Vec<LayerPicture>) -> Vec<NamedChannel> {
+    let mut all = Vec::new();
+    for picture in layers {
+        let names = picture.layer.channels();
+        for (index, name) in names.iter().enumerate() {
+            let samples = picture.samples.iter().skip(index).step_by(names.len()).copied().collect();
+            all.push(NamedChannel { name: format!("{}.{name}", picture.layer.name()), samples });
+        }
+    }
+    all
+}
+
+/// `folder/a.png` → `folder/a.depth.png`
+pub fn path_of(picture: &Path, layer: Layer) -> PathBuf {
+    picture.with_extension(format!("{}.png", layer.name()))
+}
+
+/// The bytes of a PNG that shows a layer.
+pub fn png(picture: &LayerPicture) -> Result<Vec<u8>, ImageError> {
+    encode(&shown(picture)?, Format::Png, &EncodeOptions::default())
+}
+
+/// A layer as a picture for people.
+fn shown(picture: &LayerPicture) -> Result<Image, ImageError> {
+    let pixels = || picture.samples.chunks_exact(picture.layer.channels().len());
+    let rgb = |samples: Vec<f32>| Image::from_samples(picture.width, picture.height, Channels::Rgb, samples);
+    match picture.layer {
+        Layer::Depth => heat_map(picture, colorous::VIRIDIS, "t"),
+        Layer::Rays | Layer::BoxTests | Layer::ShapeTests => {
+            heat_map(picture, colorous::INFERNO, picture.layer.name())
+        }
+        Layer::Shape | Layer::Material => rgb(pixels().flatten().flat_map(|&id| color_of(id)).collect()),
+        Layer::Normal => {
+            let color = |normal: &[f32]| {
+                let met = normal.iter().any(|&x| x != 0.0);
+                normal.iter().map(|x| if met { 0.5 + 0.5 * x } else { 0.0 }).collect::<Vec<_>>()
+            };
+            rgb(pixels().flat_map(color).collect())
+        }
+        Layer::St => {
+            let wrapped = |x: f32| x - x.floor();
+            rgb(pixels().flat_map(|st| st.iter().map(|&x| wrapped(x)).chain([0.0])).collect())
+        }
+        Layer::Position | Layer::Object => rgb(stretched(picture)),
+        Layer::Shadow | Layer::Direct | Layer::Reflected | Layer::Transmitted => rgb(picture.samples.clone()),
+    }
+}
+
+/// Each channel from its least to its greatest number.
+fn stretched(picture: &LayerPicture) -> Vec<f32> {
+    let count = picture.layer.channels().len();
+    let mut ranges = vec![(f32::INFINITY, f32::NEG_INFINITY); count];
+    for pixel in picture.samples.chunks_exact(count) {
+        for ((least, most), &sample) in ranges.iter_mut().zip(pixel) {
+            (*least, *most) = (least.min(sample), most.max(sample));
+        }
+    }
+    let scaled = |(&sample, (least, most)): (&f32, &(f32, f32))| {
+        if most > least { (sample - least) / (most - least) } else { 0.5 }
+    };
+    picture
+        .samples
+        .chunks_exact(count)
+        .flat_map(|pixel| pixel.iter().zip(&ranges).map(scaled).collect::<Vec<_>>())
+        .collect()
+}
+
+/// Colours that tell numbers apart: turns of the golden angle around the circle of hues; -1 is black.
+fn color_of(id: f32) -> [f32; 3] {
+    if id < 0.0 {
+        return [0.0; 3];
+    }
+    let hue = f64::from(id) * 0.618_033_988_749_895;
+    let [r, g, b] = colorous::SINEBOW.eval_continuous(hue - hue.floor()).into_array();
+    // Every other number darker, so that neighbours on the circle differ, too.
+    let shade = if id % 2.0 == 0.0 { 255.0 } else { 340.0 };
+    [r, g, b].map(|c| f32::from(c) / shade)
+}
+
+const LEGEND_ROWS: usize = 28;
+const BAR_ROWS: usize = 12;
+
+/// A picture by a perceptual colour map, what is not finite in black, and below it a bar with the least and the
+/// greatest number.
+fn heat_map(picture: &LayerPicture, map: Gradient, name: &str) -> Result<Image, ImageError> {
+    let finite = || picture.samples.iter().copied().filter(|sample| sample.is_finite());
+    let least = finite().fold(f32::INFINITY, f32::min);
+    let most = finite().fold(f32::NEG_INFINITY, f32::max);
+    let color = |share: f64| map.eval_continuous(share).into_array().map(|c| f32::from(c) / 255.0);
+    let share = |sample: f32| {
+        let range = f64::from(most) - f64::from(least);
+        if range > 0.0 { (f64::from(sample) - f64::from(least)) / range } else { 0.5 }
+    };
+    let mut image = Image::new(picture.width, picture.height + LEGEND_ROWS, Channels::Rgb)?;
+    let mut put = |x: usize, y: usize, [r, g, b]: [f32; 3]| {
+        image.set_pixel(x, y, [r, g, b, 1.0]);
+    };
+    for (index, &sample) in picture.samples.iter().enumerate() {
+        if sample.is_finite() {
+            put(index % picture.width, index / picture.width, color(share(sample)));
+        }
+    }
+    if least > most {
+        return Ok(image);
+    }
+    for x in 0..picture.width {
+        let share = if picture.width > 1 { x as f64 / (picture.width - 1) as f64 } else { 0.5 };
+        (1..=BAR_ROWS).for_each(|y| put(x, picture.height + y, color(share)));
+    }
+    let [low, high] = [least, most].map(|number| General(f64::from(number)).to_string());
+    let row = picture.height + BAR_ROWS + 4;
+    let width = |text: &str| 8 * text.len();
+    if width(&low) + width(&high) + 8 <= picture.width {
+        write(&mut image, 1, row, &low);
+        write(&mut image, picture.width - width(&high) - 1, row, &high);
+        let middle = (picture.width - width(name).min(picture.width)) / 2;
+        if width(&low) + 8 <= middle && middle + width(name) + 8 + width(&high) <= picture.width {
+            write(&mut image, middle, row, name);
+        }
+    }
+    Ok(image)
+}
+
+/// White letters of 8 x 8 pixels.
+fn write(image: &mut Image, x: usize, y: usize, text: &str) {
+    for (index, letter) in text.chars().enumerate() {
+        let Some(rows) = font8x8::BASIC_FONTS.get(letter) else { continue };
+        for (down, bits) in rows.into_iter().enumerate() {
+            for across in (0..8).filter(|across| bits >> across & 1 == 1) {
+                image.set_pixel(x + 8 * index + across, y + down, [1.0; 4]);
+            }
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! What a scene will take in memory, told before it is taken.
+
+use crate::options::Options;
+use crate::options::PrepareOptions;
+use crate::stats::MemoryPart;
+use dotray_accel::Kind;
+use dotray_geometry::Cuboid;
+use dotray_geometry::Shape;
+use dotray_geometry::Sphere;
+use dotray_geometry::Transform;
+use dotray_geometry::shape::OrientedCone;
+use dotray_geometry::shape::OrientedCylinder;
+use dotray_scene::Resolved;
+use dotray_scene::model::SceneFile;
+use dotray_scene::model::ShapeKind;
+use dotray_scene::resolved::Run;
+use dotray_scene::resolved::TreeEvent;
+use std::fmt;
+
+/// Numbers of shape, material and run, and the slot.
+const PLACE: u64 = 16;
+/// What rules spheres out in single precision: balls and boxes.
+const SPHERE_CULL: u64 = 40;
+/// What rules any shape out: balls, bars, boxes and corners.
+const ANY_CULL: u64 = 92;
+/// What is sorted while a hierarchy of boxes is built, and its nodes.
+const HIERARCHY: u64 = 32 + 28;
+/// Octree and BSP tree name a shape up to four times; each name stands in a list of the cell that is being divided, and
+/// in the finished one.
+const CELLS: u64 = 240;
+
+fn baked(run: &Run) -> u64 {
+    let form = match run.kind {
+        ShapeKind::Sphere => size_of::<Sphere>(),
+        ShapeKind::Cuboid => size_of::<Cuboid>(),
+        ShapeKind::Cylinder => size_of::<OrientedCylinder>(),
+        ShapeKind::Cone => size_of::<OrientedCone>(),
+        ShapeKind::Triangle | ShapeKind::IndexedTriangle => 72,
+        ShapeKind::Torus | ShapeKind::Open => size_of::<Shape>(),
+    };
+    u64::from(run.count) * (form as u64 + PLACE)
+}
+
+fn bytes<T>(list: &[T]) -> u64 {
+    size_of_val(list) as u64
+}
+
+/// The bytes of the lists of shapes as the files write them.
+pub(crate) fn written(files: &[SceneFile]) -> u64 {
+    let of_file = |file: &SceneFile| {
+        bytes(&file.spheres.shapes)
+            + bytes(&file.cuboids.shapes)
+            + bytes(&file.cylinders.shapes)
+            + bytes(&file.cones.shapes)
+            + bytes(&file.triangles.shapes)
+            + bytes(&file.indexed_triangles.shapes)
+            + bytes(&file.tori.shapes)
+            + bytes(&file.open_sides.shapes)
+            + bytes(&file.vertices)
+    };
+    files.iter().map(of_file).sum()
+}
+
+/// About what preparing and rendering a scene will hold at its worst moment, by part; textures tell their size only
+/// when they are read, and then have a limit of their own.
+pub fn estimate(resolved: &Resolved, prepare: &PrepareOptions, options: Option<&Options>) -> Vec<MemoryPart> {
+    let shapes = u64::from(resolved.shape_count);
+    let scene = written(&resolved.files)
+        + resolved.files.iter().map(|file| bytes(&file.items) + bytes(&file.groups)).sum::<u64>()
+        + (resolved.runs.len() * size_of::<Run>()) as u64
+        + (resolved.frames.len() * size_of::<Transform>()) as u64
+        + (resolved.tree.len() * 2 * size_of::<TreeEvent>()) as u64;
+    let only_spheres = resolved.runs.iter().all(|run| run.kind == ShapeKind::Sphere);
+    let cull = if only_spheres { SPHERE_CULL } else { ANY_CULL };
+    let (cull, accelerator) = match prepare.accel {
+        Kind::Brute => (0, 0),
+        Kind::Octree | Kind::Bsp => (0, CELLS),
+        Kind::Boxes | Kind::Bvh => (cull, HIERARCHY),
+    };
+    let mut parts = vec![
+        MemoryPart { name: "scene", bytes: scene },
+        MemoryPart { name: "shapes", bytes: resolved.runs.iter().map(baked).sum::<u64>() + shapes * cull },
+        MemoryPart { name: "accelerator", bytes: shapes * accelerator },
+    ];
+    if let Some(options) = options {
+        let window = options.window();
+        let channels = if options.transparent { 4 } else { 3 };
+        // Once as floats and once as the bytes of its file.
+        let pixel = 2 * channels * size_of::<f32>() as u64;
+        let pixels = u64::from(window.width) * u64::from(window.height);
+        parts.push(MemoryPart { name: "picture", bytes: pixels.saturating_mul(pixel) });
+    }
+    parts
+}
+
+/// A scene whose picture would take more memory than is allowed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TooMuchMemory {
+    /// What it would take, by part.
+    pub parts: Vec<MemoryPart>,
+    /// What is allowed.
+    pub limit: u64,
+}
+
+impl std::error::Error for TooMuchMemory {}
+
+impl fmt::Display for TooMuchMemory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let total = total(&self.parts);
+        write!(f, "this would take about {} of memory (", Bytes(total))?;
+        for (index, part) in self.parts.iter().enumerate() {
+            let comma = if index == 0 { "" } else { ", " };
+            write!(f, "{comma}{} {}", part.name, Bytes(part.bytes))?;
+        }
+        write!(f, "); the limit is {} (--max-memory allows more)", Bytes(self.limit))
+    }
+}
+
+fn total(parts: &[MemoryPart]) -> u64 {
+    parts.iter().fold(0, |sum, part| sum.saturating_add(part.bytes))
+}
+
+/// Refuses a scene that would take more memory than `limit`, before any is taken.
+///
+/// # Errors
+/// [`TooMuchMemory`], which names the estimate and its parts.
+pub fn check_memory(
+    resolved: &Resolved,
+    prepare: &PrepareOptions,
+    options: Option<&Options>,
+    limit: u64,
+) -> Result<(), TooMuchMemory> {
+    let parts = estimate(resolved, prepare, options);
+    if total(&parts) > limit { Err(TooMuchMemory { parts, limit }) } else { Ok(()) }
+}
+
+/// A number of bytes for people: three figures and a unit of 1024s.
+struct Bytes(u64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const UNITS: [&str; 5] = ["KiB", "MiB", "GiB", "TiB", "PiB"];
+        let mut value = self.0 as f64;
+        let mut shown = "B";
+        for unit in UNITS {
+            if value < 1000.0 {
+                break;
+            }
+            (value, shown) = (value / 1024.0, unit);
+        }
+        let digits = if shown == "B" || value >= 100.0 { 0 } else { 1 };
+        write!(f, "{value:.digits$} {shown}")
+    }
+}
+
+/// The memory that this machine has, or that the system lets this program have; where the system does not say it,
+/// 16 GiB.
+pub fn machine_memory() -> u64 {
+    const UNKNOWN: u64 = 16 << 30;
+    let read = |path: &str| std::fs::read_to_string(path).ok();
+    let machine = read("/proc/meminfo").and_then(|text| {
+        let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
+        line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+    });
+    // A container has less than its machine.
+    let container = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"];
+    let container = container.iter().filter_map(|path| read(path)?.trim().parse::<u64>().ok());
+    container.chain(machine).min().unwrap_or(UNKNOWN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_shown_with_three_figures() {
+        let shown =
+            [(0, "0 B"), (999, "999 B"), (1024, "1.0 KiB"), (5 << 30, "5.0 GiB"), (u64::MAX, "16384 PiB")];
+        for (bytes, text) in shown {
+            assert_eq!(Bytes(bytes).to_string(), text);
+        }
+        assert!(machine_memory() > 1 << 26);
+    }
+
+    #[test]
+    fn what_is_refused_is_told_by_part() {
+        let parts =
+            vec![MemoryPart { name: "scene", bytes: 1 << 30 }, MemoryPart { name: "shapes", bytes: 3 << 30 }];
+        let message = TooMuchMemory { parts, limit: 1 << 20 }.to_string();
+        assert_eq!(
+            message,
+            "this would take about 4.0 GiB of memory (scene 1.0 GiB, shapes 3.0 GiB); the limit is 1.0 MiB \
+             (--max-memory allows more)"
+        );
+    }
+}
