@@ -31,7 +31,7 @@ pub fn path() -> &'static Path {
 }
 
 /// The members that the program is made of.
-const SOURCES: [&str; 7] = ["geometry", "image", "accel", "scene", "render", "grade", "cli"];
+const SOURCES: [&str; 8] = ["geometry", "image", "accel", "scene", "render", "grade", "lsp", "cli"];
 
 fn modified(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).and_then(|meta| meta.modified()).ok()

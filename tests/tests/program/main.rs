@@ -8,3 +8,4 @@ mod gallery;
 mod hostile;
 mod real_scenes;
 mod round_trip;
+mod tutorial;
