@@ -67,7 +67,7 @@ fn run_page(name: &str, least: usize) {
         assert_eq!(words[0], "dotray", "only dotray's own commands are run");
         // A student's program is looked for by its whole path here: no `dotray` need be installed.
         let whole = |word: &String| match word.strip_prefix("dotray ") {
-            Some(rest) => format!("{} {rest}", program.display()),
+            Some(rest) => format!("'{}' {rest}", program.display()),
             None => word.clone(),
         };
         let output = Command::new(program)
