@@ -27,8 +27,6 @@ use dotray_scene::model::SceneFile;
 use dotray_scene::report::render_text;
 use dotray_scene::resolve;
 use dotray_scene::resolve::resolve_within;
-use dotray_scene::span::PackedStarts;
-use dotray_scene::span::Span;
 use dotray_scene::summary::summarize;
 use dotray_scene::write::write;
 use std::io;
@@ -179,30 +177,6 @@ fn layout(bytes: &[u8]) {
 /// The scene without places in its text.
 pub fn without_places(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
-    scene.files.iter_mut().for_each(clear);
+    scene.files = scene.files.into_iter().map(SceneFile::without_places).collect();
     scene
-}
-
-fn clear(file: &mut SceneFile) {
-    let nowhere = Span::default();
-    file.camera.iter_mut().for_each(|camera| camera.span = nowhere);
-    file.background.iter_mut().for_each(|color| color.span = nowhere);
-    file.ambient.iter_mut().for_each(|color| color.span = nowhere);
-    file.lights.iter_mut().for_each(|light| light.span = nowhere);
-    file.textures.iter_mut().for_each(|texture| texture.span = nowhere);
-    file.materials.iter_mut().for_each(|material| material.span = nowhere);
-    file.includes.iter_mut().for_each(|include| include.span = nowhere);
-    file.groups.iter_mut().for_each(|group| group.span = nowhere);
-    for starts in [
-        &mut file.spheres.starts,
-        &mut file.cuboids.starts,
-        &mut file.cylinders.starts,
-        &mut file.cones.starts,
-        &mut file.triangles.starts,
-        &mut file.indexed_triangles.starts,
-        &mut file.tori.starts,
-        &mut file.open_sides.starts,
-    ] {
-        *starts = PackedStarts::default();
-    }
 }

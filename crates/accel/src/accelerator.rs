@@ -200,6 +200,15 @@ impl Accelerator {
             }
         }
     }
+
+    /// One or the other, as the caller knows its rays.
+    pub fn walk_rays(&self, level: Level, queries: &Queries<'_>, batch: &mut dyn Batch, together: bool) {
+        if together {
+            self.walk_together(level, queries, batch);
+        } else {
+            self.walk(level, queries, batch);
+        }
+    }
 }
 
 /// The box around all items.

@@ -80,9 +80,8 @@ pub struct Encoded {
     pub layers: Vec<(PathBuf, Vec<u8>)>,
 }
 
-/// Computes the layers and encodes everything.
-pub fn encoded(image: &Image, world: &World, plan: &Plan) -> Result<Encoded, Failure> {
-    let layers = layers_of(world, plan)?;
+/// Encodes the picture and its layers.
+pub fn encoded(image: &Image, layers: Vec<LayerPicture>, plan: &Plan) -> Result<Encoded, Failure> {
     if plan.format == Format::Exr && !layers.is_empty() {
         let picture = encode_exr_layers(image, layers::channels(layers))?;
         return Ok(Encoded { picture, layers: Vec::new() });
@@ -93,7 +92,8 @@ pub fn encoded(image: &Image, world: &World, plan: &Plan) -> Result<Encoded, Fai
     Ok(Encoded { picture, layers })
 }
 
-fn layers_of(world: &World, plan: &Plan) -> Result<Vec<LayerPicture>, Failure> {
+/// Computes the layers that are asked for.
+pub fn layers_of(world: &World, plan: &Plan) -> Result<Vec<LayerPicture>, Failure> {
     if plan.layers.is_empty() {
         return Ok(Vec::new());
     }

@@ -4,8 +4,8 @@ use dotray::Image;
 use dotray::geometry::Aabb;
 use dotray::geometry::Vec3;
 use dotray::render::Options;
-use dotray::render::camera::Camera as PixelCamera;
-use dotray::scene::model::Camera;
+use dotray::render::camera::Camera;
+use dotray::scene::model;
 
 use crate::tree::NodeKind;
 use crate::tree::Tree;
@@ -32,61 +32,28 @@ pub fn group_wires(tree: &Tree<'_>) -> Vec<Wire> {
 const COLORS: [[f32; 3]; 6] =
     [[1.0, 1.0, 1.0], [1.0, 0.6, 0.1], [0.3, 1.0, 0.4], [0.4, 0.7, 1.0], [1.0, 0.4, 0.9], [1.0, 1.0, 0.3]];
 
-/// Where points of the scene lie in the picture.
-struct Projection {
-    eye: Vec3,
-    forward: Vec3,
-    right: Vec3,
-    up: Vec3,
-    /// Pixels a unit at distance 1.
-    scale: f64,
-    center: (f64, f64),
-}
-
-impl Projection {
-    fn new(camera: &Camera, options: &Options) -> Self {
-        let forward = camera.direction.normalize();
-        let right = forward.cross(camera.up).normalize();
-        let up = right.cross(forward);
-        let (width, height) = (f64::from(options.width), f64::from(options.height));
-        // The ray through the upper edge's middle has the half angle's tangent.
-        let upper =
-            PixelCamera::new(camera, options.width, options.height).ray(width / 2.0, height).direction;
-        let tangent = upper.dot(up) / upper.dot(forward);
-        let window = options.window();
-        Self {
-            eye: camera.position,
-            forward,
-            right,
-            up,
-            scale: height / (2.0 * tangent),
-            center: (width / 2.0 - f64::from(window.x), height / 2.0 - f64::from(window.y)),
-        }
+/// A segment in the window's pixels, without what lies behind the eye.
+fn segment(camera: &Camera, options: &Options, from: Vec3, to: Vec3) -> Option<[(f64, f64); 2]> {
+    let (a, b) = (from - camera.position(), to - camera.position());
+    let (depth_a, depth_b) = (camera.depth(a), camera.depth(b));
+    let near = 1e-6 * (a.length() + b.length());
+    let cut = |p: Vec3, depth_p: f64, q: Vec3, depth_q: f64| {
+        if depth_p >= near { p } else { p + (q - p) * ((near - depth_p) / (depth_q - depth_p)) }
+    };
+    if depth_a < near && depth_b < near {
+        return None;
     }
-
-    /// A segment in the picture, without what lies behind the eye.
-    fn segment(&self, from: Vec3, to: Vec3) -> Option<[(f64, f64); 2]> {
-        let (a, b) = (from - self.eye, to - self.eye);
-        let (depth_a, depth_b) = (a.dot(self.forward), b.dot(self.forward));
-        let near = 1e-6 * (a.length() + b.length());
-        let cut = |p: Vec3, depth_p: f64, q: Vec3, depth_q: f64| {
-            if depth_p >= near { p } else { p + (q - p) * ((near - depth_p) / (depth_q - depth_p)) }
-        };
-        if depth_a < near && depth_b < near {
-            return None;
-        }
-        let place = |p: Vec3| {
-            let depth = p.dot(self.forward);
-            let (x, y) = (p.dot(self.right) / depth, p.dot(self.up) / depth);
-            (self.center.0 + x * self.scale, self.center.1 - y * self.scale)
-        };
-        Some([place(cut(a, depth_a, b, depth_b)), place(cut(b, depth_b, a, depth_a))])
-    }
+    let window = options.window();
+    let place = |p: Vec3| {
+        let (x, y) = camera.place(p);
+        (x - f64::from(window.x), f64::from(options.height) - y - f64::from(window.y))
+    };
+    Some([place(cut(a, depth_a, b, depth_b)), place(cut(b, depth_b, a, depth_a))])
 }
 
 /// Draws the boxes, the outer ones first.
-pub fn draw(image: &mut Image, wires: &[Wire], camera: &Camera, options: &Options) {
-    let projection = Projection::new(camera, options);
+pub fn draw(image: &mut Image, wires: &[Wire], camera: &model::Camera, options: &Options) {
+    let camera = Camera::new(camera, options.width, options.height);
     for Wire { bounds, depth } in wires {
         let color = COLORS.get(depth % COLORS.len()).copied().unwrap_or([1.0; 3]);
         let corner = |index: usize| {
@@ -101,7 +68,7 @@ pub fn draw(image: &mut Image, wires: &[Wire], camera: &Camera, options: &Option
             for axis in 0..3 {
                 let to = from | 1 << axis;
                 if to != from
-                    && let Some(ends) = projection.segment(corner(from), corner(to))
+                    && let Some(ends) = segment(&camera, options, corner(from), corner(to))
                 {
                     draw_line(image, ends, color);
                 }

@@ -54,6 +54,21 @@ fn white_takes_the_place_of_a_lost_texture_where_one_wants_it() {
         .says("the texture `gone.bmp` was not found; white takes its place");
 }
 
+/// Courses' programs ran in a folder above that of their scenes; a fault elsewhere must not change where is searched.
+#[test]
+fn a_texture_above_is_found_in_a_scene_with_faults_too() {
+    let folder = with(UVA);
+    std::fs::create_dir_all(folder.path("scenes/deep")).unwrap();
+    folder.run("render a.ray scenes/wood.png 4 4").expect(0);
+    let text = UVA.replace("1 -1 !!", "1 0 !!") + "#texture wood.png\n";
+    folder.put("scenes/deep/a.ray", text.as_bytes());
+    folder.run("render scenes/deep/a.ray --size 8x6").expect(0);
+    folder.run("check scenes/deep/a.ray").expect(0);
+    folder.put("scenes/deep/a.ray", (text + "#shape_sphere 7 0 0 0 1\n").as_bytes());
+    let text = folder.run("check scenes/deep/a.ray").expect(1).text();
+    assert!(text.contains("error[unknown-material]") && !text.contains("texture"), "{text}");
+}
+
 #[test]
 fn converting_says_what_is_lost_line_by_line() {
     let folder = with(&UVA.replace(" 128 ", " 64 "));

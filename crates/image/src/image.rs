@@ -182,6 +182,7 @@ pub(crate) fn premultiplied(pixel: &[f32]) -> [f32; 4] {
 }
 
 /// The other way; a colour without alpha, which only glows, stays as it is.
+#[cfg(feature = "formats")]
 pub(crate) fn straight([r, g, b, a]: [f32; 4]) -> [f32; 4] {
     if a > 0.0 && a != 1.0 { [r / a, g / a, b / a, a] } else { [r, g, b, a] }
 }

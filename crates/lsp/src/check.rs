@@ -8,26 +8,22 @@ use crate::documents::Overlay;
 use crate::refer::existing;
 use crate::repair::Repair;
 use crate::repair::repair;
-use crate::statement::Statements;
-use crate::statement::inner;
 use crate::text::Text;
 use dotray_scene::Diagnostic;
 use dotray_scene::Dialect;
 use dotray_scene::Files;
 use dotray_scene::Severity;
 use dotray_scene::Sources;
-use dotray_scene::context::name_groups;
 use dotray_scene::files::Disk;
-use dotray_scene::lint::lint;
 use dotray_scene::load::LoadOptions;
-use dotray_scene::load::Loaded;
 use dotray_scene::load::load_text;
-use dotray_scene::model::Placed;
+use dotray_scene::look_over::look_over;
 use dotray_scene::resolve;
-use dotray_scene::resolve::resolve_texture;
-use dotray_scene::similar::similar_file;
+use dotray_scene::resolved::ResolvedTexture;
 use dotray_scene::span::FileId;
 use dotray_scene::span::Span;
+use dotray_scene::textures::Hints;
+use dotray_scene::textures::not_found;
 use lsp_types::CodeDescription;
 use lsp_types::DiagnosticRelatedInformation;
 use lsp_types::DiagnosticSeverity;
@@ -98,7 +94,8 @@ pub fn check(document: &Document, documents: &Documents, reading: &Reading) -> C
     let name = document.path.display().to_string();
     let loaded = load_text(&name, document.bytes.clone(), &overlay, &options);
     let dialect = loaded.dialect;
-    let (diagnostics, sources) = all_of(loaded);
+    let limits = resolve::Limits { shapes: MOST_SHAPES, ..resolve::Limits::default() };
+    let (diagnostics, sources) = look_over(loaded, &limits, missing);
     let count = u32::try_from(sources.len()).unwrap_or(u32::MAX);
     let includes = (1..count).map(|file| Disk.identity(sources.path(FileId(file)))).collect();
     let mut writer =
@@ -107,55 +104,13 @@ pub fn check(document: &Document, documents: &Documents, reading: &Reading) -> C
     Checked { findings, includes, dialect }
 }
 
-/// The messages of reading, resolving and looking the scene over, in their order.
-fn all_of(loaded: Loaded) -> (Vec<Diagnostic>, Sources) {
-    let Loaded { scene, mut diagnostics, sources, .. } = loaded;
-    let limits = resolve::Limits { shapes: MOST_SHAPES, ..resolve::Limits::default() };
-    if let Some(outcome) = scene.map(|scene| resolve::resolve_within(scene, &limits)) {
-        diagnostics.extend(outcome.diagnostics);
-        diagnostics.extend(outcome.resolved.iter().flat_map(lint));
-    }
-    diagnostics.extend(missing_textures(&sources));
-    name_groups(&mut diagnostics, &sources);
-    diagnostics
-        .sort_by_key(|diagnostic| diagnostic.span.map_or((true, Span::default()), |span| (false, span)));
-    (diagnostics, sources)
-}
-
-/// The textures whose files are nowhere, also those of a scene that has faults elsewhere.
-fn missing_textures(sources: &Sources) -> Vec<Diagnostic> {
+/// The textures whose files are nowhere.
+fn missing(textures: &[ResolvedTexture]) -> Vec<Diagnostic> {
     /// Each is looked for on disk.
     const MOST: usize = 1000;
-    let files = u32::try_from(sources.len()).unwrap_or(u32::MAX);
-    let mut missing = Vec::new();
-    for file in (0..files).map(FileId) {
-        let bytes = sources.bytes(file);
-        let is_texture = |word: &[u8]| word.eq_ignore_ascii_case(b"#texture");
-        let textures = Statements::new(bytes).filter(|statement| {
-            is_texture(bytes.get(statement.word.start..statement.word.end).unwrap_or_default())
-        });
-        for statement in textures.take(MOST) {
-            let Some(name) = statement.arguments.first() else { continue };
-            let span = Span::new(file, statement.word.start, name.end);
-            let placed = Placed { value: inner(bytes, *name), span };
-            let texture = resolve_texture(sources.path(file), &placed);
-            if existing(&texture.candidates).is_none() {
-                missing.push(not_found(&placed, &texture.candidates));
-            }
-        }
-    }
-    missing
-}
-
-fn not_found(placed: &Placed<String>, candidates: &[PathBuf]) -> Diagnostic {
-    let error =
-        Diagnostic::error("texture-not-found", format!("the texture `{}` was not found", placed.value));
-    let error =
-        candidates.iter().fold(error, |error, path| error.note(format!("tried `{}`", path.display())));
-    error.at(placed.span).help(match candidates.iter().find_map(|path| similar_file(&Disk, path)) {
-        Some(similar) => format!("there is a file `{similar}`"),
-        None => "a texture's name is relative to the folder of its .ray file".to_owned(),
-    })
+    let looked_for = textures.iter().take(MOST).filter(|texture| existing(&texture.candidates).is_none());
+    let mut hints = Hints::new(&Disk);
+    looked_for.map(|texture| not_found(&mut hints, texture, Vec::new())).collect()
 }
 
 fn too_large(document: &Document) -> Checked {

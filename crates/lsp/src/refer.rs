@@ -62,7 +62,9 @@ pub fn named_by(
         (Directive::Texture | Directive::RayFile | Directive::KeyFile | Directive::Shader, _) => {
             let value = inner(bytes, token);
             // Textures are looked for where other files are.
-            Some(Named::File(resolve_texture(path, &Placed { value, span: Span::default() }).candidates))
+            Some(Named::File(
+                resolve_texture(path, dialect, &Placed { value, span: Span::default() }).candidates,
+            ))
         }
         (directive, name) => {
             let number = std::str::from_utf8(slice(bytes, token)).ok()?.parse().ok()?;

@@ -34,6 +34,24 @@ impl Camera {
         }
     }
 
+    /// Where rays start.
+    pub fn position(&self) -> Vec3 {
+        self.position
+    }
+
+    /// How far ahead of the eye something lies that is `offset` away from it.
+    pub fn depth(&self, offset: Vec3) -> f64 {
+        offset.dot(self.forward)
+    }
+
+    /// (x, y) of what lies `offset` away from the eye, ahead of it: the inverse of [`Camera::ray`].
+    pub fn place(&self, offset: Vec3) -> (f64, f64) {
+        let at = |per_pixel: Vec3, half: f64| {
+            offset.dot(per_pixel) / (self.depth(offset) * per_pixel.length_squared()) + half
+        };
+        (at(self.right_per_pixel, self.half_width), at(self.up_per_pixel, self.half_height))
+    }
+
     /// The ray through (x, y), in pixels from the lower left corner; its direction has length 1.
     #[inline]
     pub fn ray(&self, x: f64, y: f64) -> Ray {
@@ -63,5 +81,9 @@ mod tests {
         // tan θ_W = 2 tan θ_H: the upper right corner lies at (2, 1, -1).
         let corner = camera.ray(200.0, 100.0).direction;
         assert!((corner - Vec3::new(2.0, 1.0, -1.0).normalize()).length() < 1e-15);
+        for (x, y) in [(100.0, 50.0), (200.0, 100.0), (3.25, 99.5), (-40.0, 170.0)] {
+            let (again_x, again_y) = camera.place(camera.ray(x, y).direction * 7.0);
+            assert!((again_x - x).abs() < 1e-10 && (again_y - y).abs() < 1e-10);
+        }
     }
 }

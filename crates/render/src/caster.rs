@@ -84,6 +84,17 @@ impl Caster {
 
     /// The same, where the materials have been taken out of the scene.
     pub(crate) fn with_default(resolved: Resolved, default_material: u32, options: &PrepareOptions) -> Self {
+        // Threads that cannot be had are no reason to fail: the common ones build the same tree.
+        let pool = options.threads.and_then(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().ok());
+        let build = || Self::build_here(resolved, default_material, options);
+        match pool {
+            Some(pool) => pool.install(build),
+            None => build(),
+        }
+    }
+
+    /// The same on the threads of the pool it is called in.
+    fn build_here(resolved: Resolved, default_material: u32, options: &PrepareOptions) -> Self {
         let start = Instant::now();
         let boxes = ShapeBoxes {
             runs: &resolved.runs,
@@ -93,13 +104,7 @@ impl Caster {
         };
         let groups = group_events(&resolved);
         let settings = Settings { quality: options.quality };
-        let build = || Accelerator::build(options.accel, &boxes, &groups, &settings);
-        // Threads that cannot be had are no reason to fail: the common pool builds the same tree.
-        let pool = options.threads.and_then(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().ok());
-        let built = match &pool {
-            Some(pool) => pool.install(build),
-            None => build(),
-        };
+        let built = Accelerator::build(options.accel, &boxes, &groups, &settings);
         let mut seconds = vec![("build", start.elapsed().as_secs_f64())];
 
         let start = Instant::now();
@@ -107,11 +112,7 @@ impl Caster {
         let material = |run: &Run, written: i32| run.material(written).unwrap_or(default_material);
         let Resolved { runs, frames, files, shape_count, .. } = resolved;
         let numbers = built.order.unwrap_or_else(|| (0..shape_count).collect());
-        let bake = || Shapes::bake(runs, frames, files, &numbers, cull_frame, material);
-        let shapes = match &pool {
-            Some(pool) => pool.install(bake),
-            None => bake(),
-        };
+        let shapes = Shapes::bake(runs, frames, files, &numbers, cull_frame, material);
         seconds.push(("bake", start.elapsed().as_secs_f64()));
         Self { shapes, accelerator: built.accelerator, seconds, level: level() }
     }
@@ -121,11 +122,7 @@ impl Caster {
     pub fn nearest(&self, queries: &Queries<'_>, together: bool) -> Vec<Option<Nearest>> {
         let mut buffers = NearestBuffers::default();
         let mut batch = NearestBatch::new(self.level, &self.shapes, *queries, &mut buffers);
-        if together {
-            self.accelerator.walk_together(self.level, queries, &mut batch);
-        } else {
-            self.accelerator.walk(self.level, queries, &mut batch);
-        }
+        self.accelerator.walk_rays(self.level, queries, &mut batch, together);
         buffers.found
     }
 
@@ -133,11 +130,7 @@ impl Caster {
     pub fn occluded(&self, queries: &Queries<'_>, together: bool) -> Vec<bool> {
         let mut buffers = ShadowBuffers::default();
         let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| false, &mut buffers);
-        if together {
-            self.accelerator.walk_together(self.level, queries, &mut batch);
-        } else {
-            self.accelerator.walk(self.level, queries, &mut batch);
-        }
+        self.accelerator.walk_rays(self.level, queries, &mut batch, together);
         buffers.blockers.iter().map(|&blocker| blocker != UNBLOCKED).collect()
     }
 

@@ -14,6 +14,7 @@ use crate::inspect::Shadow;
 use crate::options::Options;
 use crate::options::Shadows;
 use crate::query::Tests;
+use crate::threads::on_threads;
 use crate::tiles::Observer;
 use crate::tiles::Progress;
 use crate::trace::Tracer;
@@ -247,15 +248,7 @@ pub fn render_layers(
         Some(samples)
     };
     let run = || (0..window.height).into_par_iter().map(row).collect::<Option<Vec<_>>>();
-    let rows = match options.threads {
-        None => run(),
-        Some(threads) => rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?
-            .install(run),
-    };
-    let Some(rows) = rows else { return Ok(None) };
+    let Some(rows) = on_threads(options.threads, run)? else { return Ok(None) };
     let picture = |(index, &layer): (usize, &Layer)| {
         let mut samples = Vec::with_capacity(width * height * layer.channels().len());
         rows.iter().for_each(|row| samples.extend_from_slice(&row[index]));

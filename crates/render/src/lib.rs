@@ -7,6 +7,8 @@
 
 pub mod error;
 
+mod threads;
+
 pub mod options;
 
 pub mod stats;

@@ -11,6 +11,7 @@ use crate::sampler::LatticePoint;
 use crate::sampler::Sample;
 use crate::stats::MemoryPart;
 use crate::stats::Stats;
+use crate::threads::on_threads;
 use crate::trace::Tracer;
 use crate::world::World;
 use dotray_geometry::Ray;
@@ -120,14 +121,7 @@ fn develop<T: Traced>(
     };
     let tiles = tiles(options, window);
     let run = || tiles.par_iter().with_max_len(1).map(|tile| job.tile(*tile)).reduce(|| true, |a, b| a && b);
-    let complete = match options.threads {
-        None => run(),
-        Some(threads) => rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| RenderError::Threads { threads, reason: error.to_string() })?
-            .install(run),
-    };
+    let complete = on_threads(options.threads, run)?;
     Ok((job.film.into_inner().unwrap_or_else(PoisonError::into_inner), complete))
 }
 

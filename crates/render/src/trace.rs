@@ -205,11 +205,7 @@ impl<'a> Tracer<'a> {
         let queries = Queries { rays: &stream.rays, t_min: &t_min, t_max: ENDLESS };
         let shapes = &world.caster.shapes;
         let mut batch = NearestBatch::new(self.level, shapes, queries, &mut self.nearest);
-        if together {
-            world.caster.accelerator.walk_together(self.level, &queries, &mut batch);
-        } else {
-            world.caster.accelerator.walk(self.level, &queries, &mut batch);
-        }
+        world.caster.accelerator.walk_rays(self.level, &queries, &mut batch, together);
         count(&mut self.stats, &self.nearest.tests);
         let filter = self.options.texture_filter;
         for (index, found) in self.nearest.found.iter().enumerate() {
@@ -401,9 +397,9 @@ fn light_term(point: &ShadePoint<'_>, from: LightSample<'_>, incident: Option<&I
 
 /// What the lights' own ambient colours add, whatever stands between; only one dialect has such lights.
 fn ambient_of_lights(world: &World, point: &ShadePoint<'_>) -> Vec3 {
-    let tinted = world.lights.iter().zip(&world.tints).filter(|(_, tint)| tint.ambient != Vec3::ZERO);
-    let incidents = tinted.filter_map(|(light, tint)| Some((light.incident(point.point, 0, 1)?, tint)));
-    incidents.fold(Vec3::ZERO, |sum, (incident, tint)| sum + point.ambient(tint.ambient * incident.strength))
+    let lights = world.ambient_lights.iter();
+    let incidents = lights.filter_map(|(light, color)| Some((light.incident(point.point, 0, 1)?, color)));
+    incidents.fold(Vec3::ZERO, |sum, (incident, color)| sum + point.ambient(*color * incident.strength))
 }
 
 fn count(stats: &mut Stats, tests: &[Tests]) {

@@ -13,11 +13,14 @@ use dotray_image::Limits;
 use dotray_scene::Diagnostic;
 use dotray_scene::Files;
 use dotray_scene::Resolved;
-use dotray_scene::Severity;
 use dotray_scene::model;
 use dotray_scene::model::Tint;
 use dotray_scene::resolved::ResolvedMaterial;
 use dotray_scene::resolved::ResolvedTexture;
+use dotray_scene::textures::Hints;
+use dotray_scene::textures::not_found;
+use dotray_scene::textures::unreadable;
+use std::io::ErrorKind;
 use std::time::Instant;
 
 /// A scene ready for tracing.
@@ -29,6 +32,8 @@ pub struct World {
     pub(crate) ambient: Vec3,
     pub(crate) lights: Vec<Light>,
     pub(crate) tints: Vec<Tint>,
+    /// The lights that have an ambient colour of their own, with it; none in most scenes.
+    pub(crate) ambient_lights: Vec<(Light, Vec3)>,
     pub(crate) materials: Vec<ResolvedMaterial>,
     pub(crate) textures: Vec<Texture>,
     pub(crate) caster: Caster,
@@ -97,10 +102,12 @@ impl World {
         let mut resolved = resolved;
         let default_material = resolved.default_material();
         let materials = std::mem::take(&mut resolved.materials);
-        let lights = resolved.lights.iter().map(Light::new).collect();
+        let lights: Vec<Light> = resolved.lights.iter().map(Light::new).collect();
         // Whoever adds a light to a resolved scene need not know of tints.
         let mut tints = std::mem::take(&mut resolved.tints);
         tints.resize(resolved.lights.len(), Tint::PLAIN);
+        let with_ambient = lights.iter().zip(&tints).filter(|(_, tint)| tint.ambient != Vec3::ZERO);
+        let ambient_lights = with_ambient.map(|(light, tint)| (*light, tint.ambient)).collect();
         let secondary_background = resolved.secondary_background;
         let (camera, background, ambient) = (resolved.camera, resolved.background, resolved.ambient);
         let caster = Caster::with_default(resolved, default_material, options);
@@ -114,6 +121,7 @@ impl World {
             ambient,
             lights,
             tints,
+            ambient_lights,
             materials,
             textures,
             caster,
@@ -170,15 +178,8 @@ impl World {
 }
 
 fn too_many_shapes(count: u32) -> Diagnostic {
-    Diagnostic {
-        severity: Severity::Error,
-        code: "too-many-shapes",
-        message: format!("the scene holds {count} shapes; at most {MAX_ITEMS} can be rendered"),
-        span: None,
-        label: String::new(),
-        notes: Vec::new(),
-        help: Some("place fewer instances, or split the scene".to_owned()),
-    }
+    let message = format!("the scene holds {count} shapes; at most {MAX_ITEMS} can be rendered");
+    Diagnostic::error("too-many-shapes", message).help("place fewer instances, or split the scene")
 }
 
 fn load_textures(
@@ -188,10 +189,11 @@ fn load_textures(
 ) -> Result<Vec<Texture>, Vec<Diagnostic>> {
     let mut loaded = Vec::new();
     let mut faults = Vec::new();
+    let mut hints = Hints::new(files);
     // The limit on bytes is for all textures together.
     let mut left = limits.max_bytes;
     for texture in textures {
-        match load_texture(texture, files, &Limits { max_bytes: left, ..*limits }) {
+        match load_texture(texture, files, &mut hints, &Limits { max_bytes: left, ..*limits }) {
             Ok(texture) => {
                 left = left.saturating_sub(texture.memory());
                 loaded.push(texture);
@@ -205,42 +207,25 @@ fn load_textures(
 fn load_texture(
     texture: &ResolvedTexture,
     files: &dyn Files,
+    hints: &mut Hints,
     limits: &Limits,
 ) -> Result<Texture, Box<Diagnostic>> {
-    let fault = |code, message, notes: Vec<String>, help: &str| {
-        Box::new(Diagnostic {
-            severity: Severity::Error,
-            code,
-            message,
-            span: Some(texture.span),
-            label: String::new(),
-            notes: notes.into_iter().map(|note| (None, note)).collect(),
-            help: Some(help.to_owned()),
-        })
-    };
-    let mut tried = Vec::new();
+    let mut refused = Vec::new();
     for path in &texture.candidates {
         // No picture of so many bytes in memory is larger on disk.
         match files.read_at_most(path, limits.max_bytes) {
             Ok(bytes) => {
                 let hint = dotray_image::Format::from_path(path).ok();
                 return dotray_image::decode(&bytes, hint, limits).map(Texture::new).map_err(|error| {
-                    let help = if matches!(error, ImageError::Size { .. } | ImageError::Memory { .. }) {
-                        "a smaller picture will do, or a higher limit (`--max-pixels`)"
-                    } else {
-                        "save it anew as BMP, PNG, JPEG, PPM, QOI, TIFF, HDR or EXR"
-                    };
-                    let message = format!("cannot decode the texture `{}`: {error}", path.display());
-                    fault("texture-unreadable", message, Vec::new(), help)
+                    let fault = unreadable(texture, path, &error.to_string());
+                    let too_large = matches!(error, ImageError::Size { .. } | ImageError::Memory { .. });
+                    let help = "a smaller picture will do, or a higher limit (`--max-pixels`)";
+                    Box::new(if too_large { fault.help(help) } else { fault })
                 });
             }
-            Err(error) => tried.push(format!("tried {}: {error}", path.display())),
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => refused.push(format!("cannot read `{}`: {error}", path.display())),
         }
     }
-    Err(fault(
-        "texture-not-found",
-        format!("cannot read the texture `{}`", texture.name),
-        tried,
-        "a texture's name is relative to the folder of its .ray file",
-    ))
+    Err(Box::new(not_found(hints, texture, refused)))
 }

@@ -51,7 +51,11 @@ pub mod bounds;
 
 pub mod resolve;
 
+pub mod textures;
+
 pub mod lint;
+
+pub mod look_over;
 
 pub mod codes;
 

@@ -286,3 +286,33 @@ pub struct Scene {
     /// File 0 is the one asked for.
     pub files: Vec<SceneFile>,
 }
+
+impl SceneFile {
+    /// The file without the places of its text, such that two texts that say the same give equal files.
+    pub fn without_places(mut self) -> Self {
+        fn clear<T>(placed: &mut Placed<T>) {
+            placed.span = Span::default();
+        }
+        self.camera.iter_mut().for_each(clear);
+        self.background.iter_mut().for_each(clear);
+        self.ambient.iter_mut().for_each(clear);
+        self.lights.iter_mut().for_each(clear);
+        self.textures.iter_mut().for_each(clear);
+        self.materials.iter_mut().for_each(clear);
+        self.includes.iter_mut().for_each(clear);
+        self.groups.iter_mut().for_each(clear);
+        for starts in [
+            &mut self.spheres.starts,
+            &mut self.cuboids.starts,
+            &mut self.cylinders.starts,
+            &mut self.cones.starts,
+            &mut self.triangles.starts,
+            &mut self.indexed_triangles.starts,
+            &mut self.tori.starts,
+            &mut self.open_sides.starts,
+        ] {
+            *starts = PackedStarts::default();
+        }
+        self
+    }
+}

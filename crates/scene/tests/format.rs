@@ -9,10 +9,7 @@ use dotray_scene::format::is_structural;
 use dotray_scene::format::says_the_same;
 use dotray_scene::load::LoadOptions;
 use dotray_scene::load::load_text;
-use dotray_scene::model::Placed;
 use dotray_scene::model::SceneFile;
-use dotray_scene::span::PackedStarts;
-use dotray_scene::span::Span;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::io;
@@ -195,33 +192,10 @@ impl Files for Parts {
     }
 }
 
-fn without_places(mut file: SceneFile) -> SceneFile {
-    fn clear<T>(placed: &mut Placed<T>) {
-        placed.span = Span::default();
-    }
-    file.camera.iter_mut().for_each(clear);
-    file.background.iter_mut().for_each(clear);
-    file.ambient.iter_mut().for_each(clear);
-    file.lights.iter_mut().for_each(clear);
-    file.textures.iter_mut().for_each(clear);
-    file.materials.iter_mut().for_each(clear);
-    file.includes.iter_mut().for_each(clear);
-    file.groups.iter_mut().for_each(clear);
-    file.spheres.starts = PackedStarts::default();
-    file.cuboids.starts = PackedStarts::default();
-    file.cylinders.starts = PackedStarts::default();
-    file.cones.starts = PackedStarts::default();
-    file.triangles.starts = PackedStarts::default();
-    file.indexed_triangles.starts = PackedStarts::default();
-    file.tori.starts = PackedStarts::default();
-    file.open_sides.starts = PackedStarts::default();
-    file
-}
-
 /// The files as read; `None` where something is wrong with them.
 fn read(path: &str, text: &[u8], files: &dyn Files) -> Option<Vec<SceneFile>> {
     let loaded = load_text(path, text, files, &LoadOptions::default());
-    loaded.scene.map(|scene| scene.files.into_iter().map(without_places).collect())
+    loaded.scene.map(|scene| scene.files.into_iter().map(SceneFile::without_places).collect())
 }
 
 /// Formatting a file on disk changes nothing of what it means.

@@ -25,7 +25,6 @@ use dotray_scene::model::ShapeKind;
 use dotray_scene::model::ShapeList;
 use dotray_scene::model::Vertex;
 use dotray_scene::span::FileId;
-use dotray_scene::span::PackedStarts;
 use dotray_scene::span::Span;
 use dotray_scene::write::write;
 use proptest::collection::vec;
@@ -46,28 +45,7 @@ impl Files for Parts {
 fn read(text: &str) -> SceneFile {
     let loaded = load_text("main.ray", text, &Parts, &LoadOptions::default());
     let Some(scene) = loaded.scene else { panic!("{:#?}\n{text}", loaded.diagnostics) };
-    without_places(scene.files.into_iter().next().unwrap())
-}
-
-fn without_places(mut file: SceneFile) -> SceneFile {
-    fn clear<T>(placed: &mut Placed<T>) {
-        placed.span = Span::default();
-    }
-    file.camera.iter_mut().for_each(clear);
-    file.background.iter_mut().for_each(clear);
-    file.ambient.iter_mut().for_each(clear);
-    file.lights.iter_mut().for_each(clear);
-    file.textures.iter_mut().for_each(clear);
-    file.materials.iter_mut().for_each(clear);
-    file.includes.iter_mut().for_each(clear);
-    file.groups.iter_mut().for_each(clear);
-    file.spheres.starts = PackedStarts::default();
-    file.cuboids.starts = PackedStarts::default();
-    file.cylinders.starts = PackedStarts::default();
-    file.cones.starts = PackedStarts::default();
-    file.triangles.starts = PackedStarts::default();
-    file.indexed_triangles.starts = PackedStarts::default();
-    file
+    scene.files.into_iter().next().unwrap().without_places()
 }
 
 #[test]

@@ -51,6 +51,11 @@ fn survives(name: &str, text: Vec<u8>) -> bool {
     })
 }
 
+/// As much of an input as a reader of the report can bear.
+fn start_of(input: &[u8]) -> String {
+    format!("{} bytes: {}", input.len(), String::from_utf8_lossy(&input[..input.len().min(4000)]))
+}
+
 /// Goes through the inputs on a thread of its own, so that one that hangs is named.
 fn all_survive(name: &'static str, inputs: Vec<Vec<u8>>) -> usize {
     let (tell, told) = mpsc::channel();
@@ -69,10 +74,10 @@ fn all_survive(name: &'static str, inputs: Vec<Vec<u8>>) -> usize {
         match told.recv_timeout(PATIENCE) {
             Ok(done) => rendered += usize::from(done),
             Err(mpsc::RecvTimeoutError::Timeout) => {
-                panic!("{name} hangs:\n{}", String::from_utf8_lossy(input))
+                panic!("{name} hangs:\n{}", start_of(input))
             }
             Err(mpsc::RecvTimeoutError::Disconnected) => {
-                panic!("{name} crashes:\n{}", String::from_utf8_lossy(input));
+                panic!("{name} crashes:\n{}", start_of(input));
             }
         }
     }

@@ -201,11 +201,7 @@ pub fn walk<I: Item>(built: &Built, level: Level, rays: &mut Rays<'_, I>, togeth
     let t_min: Vec<_> = rays.queries.iter().map(|query| query.t_min).collect();
     let t_max: Vec<_> = rays.queries.iter().map(|query| query.t_max).collect();
     let queries = Queries { rays: &lines, t_min: &t_min, t_max: &t_max };
-    if together {
-        built.accelerator.walk_together(level, &queries, rays);
-    } else {
-        built.accelerator.walk(level, &queries, rays);
-    }
+    built.accelerator.walk_rays(level, &queries, rays, together);
 }
 
 pub fn trace<I: Item>(

@@ -4,13 +4,10 @@ use dotray::scene::Diagnostic;
 use dotray::scene::Files;
 use dotray::scene::codes::all_codes;
 use dotray::scene::codes::explain;
-use dotray::scene::context::name_groups;
-use dotray::scene::lint::lint;
 use dotray::scene::load::LoadOptions;
-use dotray::scene::load::Loaded;
 use dotray::scene::load::load;
 use dotray::scene::load::load_text;
-use dotray::scene::resolve::resolve_within;
+use dotray::scene::look_over::look_over;
 use dotray::scene::similar::near_names;
 use dotray::scene::sources::Sources;
 use dotray::scene::span::FileId;
@@ -39,7 +36,6 @@ use crate::reading_args::LimitArgs;
 use crate::scenes::Asked;
 use crate::scenes::expand;
 use crate::textures::Textures;
-use crate::textures::named_in;
 use crate::values::When;
 
 /// Prints all messages, or explains a code.
@@ -91,7 +87,8 @@ impl Checked {
             }
             Asked::Nothing(folder) => return Ok(Self::nothing(folder, color)),
         };
-        let (diagnostics, sources) = look_over(loaded, limits, textures);
+        let (diagnostics, sources) =
+            look_over(loaded, &resolve_limits(limits), |named| textures.check(named));
         let scene = name.display().to_string();
         let findings = diagnostics.iter().map(|found| Finding::new(found, &sources, &scene, color)).collect();
         let numbers = 0..u32::try_from(sources.len()).unwrap_or(u32::MAX);
@@ -108,30 +105,6 @@ impl Checked {
 }
 
 const STANDARD: &str = "<stdin>";
-
-/// All that there is to say about a scene, in the order of its files and places.
-fn look_over(loaded: Loaded, limits: &LimitArgs, textures: &mut Textures<'_>) -> (Vec<Diagnostic>, Sources) {
-    let Loaded { scene, mut diagnostics, sources, .. } = loaded;
-    let outcome = scene.map(|scene| resolve_within(scene, &resolve_limits(limits)));
-    let mut resolved = None;
-    if let Some(outcome) = outcome {
-        diagnostics.extend(outcome.diagnostics);
-        resolved = outcome.resolved;
-    }
-    match &resolved {
-        Some(resolved) => {
-            diagnostics.extend(textures.check(&resolved.textures));
-            diagnostics.extend(lint(resolved));
-        }
-        None => diagnostics.extend(textures.check(&named_in(&sources))),
-    }
-    name_groups(&mut diagnostics, &sources);
-    diagnostics.sort_by_key(|diagnostic| match diagnostic.span {
-        Some(span) => (false, span.file, span.start),
-        None => (true, FileId(0), u64::from(diagnostic.code == "too-many-errors")),
-    });
-    (diagnostics, sources)
-}
 
 /// All scenes in one report. What several of them include is told once, and a file that others include is a part: it
 /// needs neither camera nor lamps.

@@ -17,6 +17,7 @@ use crate::exit::say;
 use crate::extras::Encoded;
 use crate::extras::Extras;
 use crate::extras::encoded;
+use crate::extras::layers_of;
 use crate::input;
 use crate::input::Understood;
 use crate::input::understand;
@@ -67,9 +68,14 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
         return Err(Failure::Interrupted);
     }
     seconds.extend(&stats.seconds);
+    let looking = Instant::now();
+    let layers = layers_of(&world, &plan)?;
+    if !layers.is_empty() {
+        seconds.push(("layers", looking.elapsed().as_secs_f64()));
+    }
     let encoding = Instant::now();
     let image = extras.apply(image, &world, &plan)?;
-    let Encoded { picture, layers } = encoded(&image, &world, &plan)?;
+    let Encoded { picture, layers } = encoded(&image, layers, &plan)?;
     seconds.push(("encode", encoding.elapsed().as_secs_f64()));
     interrupt::check()?;
     let writing = Instant::now();

@@ -35,8 +35,7 @@ pub fn resolve(files: &[SceneFile], sink: &mut Sink) -> Materials {
     for file in files {
         let texture_base = all.textures.len() as u32;
         all.bases.push(all.materials.len() as u32);
-        let textures =
-            file.textures.iter().map(|placed| resolve_texture_of(&file.path, file.dialect, placed));
+        let textures = file.textures.iter().map(|placed| resolve_texture(&file.path, file.dialect, placed));
         all.textures.extend(textures);
         for placed in &file.materials {
             let texture = check_texture(placed, file.textures.len(), sink).map(|tn| texture_base + tn);
@@ -48,13 +47,8 @@ pub fn resolve(files: &[SceneFile], sink: &mut Sink) -> Materials {
 }
 
 /// Where the image of a `#texture` of the file at `scene_path` may lie: beside that file, else in the working
-/// directory.
-pub fn resolve_texture(scene_path: &Path, placed: &Placed<String>) -> ResolvedTexture {
-    resolve_texture_of(scene_path, Dialect::Slides, placed)
-}
-
-/// The same for a file of any dialect: courses' programs ran in a folder above that of their scenes.
-fn resolve_texture_of(scene_path: &Path, dialect: Dialect, placed: &Placed<String>) -> ResolvedTexture {
+/// directory; for a lenient dialect also in the folders above, where courses' programs ran.
+pub fn resolve_texture(scene_path: &Path, dialect: Dialect, placed: &Placed<String>) -> ResolvedTexture {
     const ABOVE: usize = 3;
     let name = &placed.value;
     // Course files written on Windows separate folders by a backslash.
