@@ -140,6 +140,7 @@ fn options(typed: &RenderArgs) -> Result<Options, Failure> {
         max_pixels: typed.max_pixels.unwrap_or(defaults.max_pixels),
         threads: typed.threads.map(usize::from),
         tile_size: typed.tile_size.unwrap_or(defaults.tile_size),
+        order: defaults.order,
     })
 }
 

@@ -1,7 +1,7 @@
 //! A bar on a terminal: share, rate, time left. Nothing at all anywhere else.
 
 use dotray::render::Observer;
-use dotray::render::tiles::Progress;
+use dotray::render::Progress;
 use indicatif::ProgressBar;
 use indicatif::ProgressDrawTarget;
 use indicatif::ProgressState;

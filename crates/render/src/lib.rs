@@ -13,6 +13,10 @@ pub mod options;
 
 pub mod stats;
 
+pub mod tile;
+
+pub mod observer;
+
 pub mod estimate;
 
 pub mod camera;
@@ -47,15 +51,25 @@ pub mod trace;
 
 pub mod sampler;
 
+mod borders;
+
+pub mod film;
+
+pub mod picture;
+
 pub mod tiles;
 
 pub mod layers;
 
 pub use caster::Caster;
 pub use error::RenderError;
+pub use film::Film;
 pub use layers::{Layer, LayerPicture, render_layers};
-pub use options::{Antialias, Crop, Options, PrepareOptions, Shadows, TextureFilter};
+pub use observer::{Observer, Progress, Silent};
+pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};
+pub use picture::Picture;
 pub use query::Nearest;
 pub use stats::{MemoryPart, Stats};
-pub use tiles::{Observer, Rendering, Silent, render};
+pub use tile::{Tile, TilePixels};
+pub use tiles::{Rendering, render, render_missing};
 pub use world::{Textures, World};
