@@ -72,3 +72,15 @@ pub fn write(output: &Place, bytes: &[u8]) -> Result<(), Failure> {
         Place::File(path) => write_file(path, bytes).map_err(|error| Failure::Failed(error.to_string())),
     }
 }
+
+/// Writes the picture's file; where that fails, it goes to the folder for temporary files, so that the work is not lost.
+pub fn write_or_rescue(output: &Place, bytes: &[u8]) -> Result<(), Failure> {
+    let Err(failure) = write(output, bytes) else { return Ok(()) };
+    let (Failure::Failed(message), Place::File(path)) = (&failure, output) else { return Err(failure) };
+    let name = path.file_name().unwrap_or("picture".as_ref()).to_string_lossy().into_owned();
+    let rescue = std::env::temp_dir().join(format!("dotray-{}-{name}", std::process::id()));
+    match write_file(&rescue, bytes) {
+        Ok(()) => Err(Failure::Failed(format!("{message}\nthe picture is in `{}`", rescue.display()))),
+        Err(_) => Err(failure),
+    }
+}

@@ -7,6 +7,7 @@ use crate::options::Options;
 use crate::stats::Stats;
 use crate::tile::Tile;
 use crate::tile::TilePixels;
+use crate::tile::tiles;
 use dotray_image::Channels;
 use dotray_image::Image;
 use dotray_image::Limits;
@@ -24,8 +25,13 @@ pub struct Film {
 }
 
 impl Film {
-    /// Black, for these tiles.
-    pub(crate) fn new(options: &Options, tiles: Vec<Tile>) -> Result<Self, RenderError> {
+    /// Black, for the tiles of the picture that `options` ask for.
+    ///
+    /// # Errors
+    /// Options that make no sense, a picture too large for memory.
+    pub fn new(options: &Options) -> Result<Self, RenderError> {
+        options.validate()?;
+        let tiles = tiles(options);
         let window = options.window();
         let channels = if options.transparent { Channels::Rgba } else { Channels::Rgb };
         // Whoever allows so many pixels allows the memory for them.
@@ -74,6 +80,27 @@ impl Film {
             samples[start..start + line.len()].copy_from_slice(line);
         }
         true
+    }
+
+    /// All tiles by number.
+    pub fn tiles(&self) -> &[Tile] {
+        &self.tiles
+    }
+
+    /// The pixels of a tile that is there; what each tile cost is not kept, so its counts are 0.
+    pub fn pixels(&self, tile: &Tile) -> Option<TilePixels> {
+        if !self.has(tile) {
+            return None;
+        }
+        let channels = self.channels as usize;
+        let width = self.window.width as usize * channels;
+        let left = (tile.x - self.window.x) as usize * channels;
+        let mut samples = Vec::new();
+        for row in tile.y - self.window.y..tile.y - self.window.y + tile.height {
+            let start = row as usize * width + left;
+            samples.extend_from_slice(&self.image.samples()[start..start + tile.width as usize * channels]);
+        }
+        Some(TilePixels { tile: *tile, channels: self.channels, samples, counts: Stats::default() })
     }
 
     /// The picture so far.

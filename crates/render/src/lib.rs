@@ -51,6 +51,12 @@ pub mod trace;
 
 pub mod sampler;
 
+mod numbers;
+
+pub mod fingerprint;
+
+pub mod tile_file;
+
 mod borders;
 
 pub mod film;
@@ -64,6 +70,7 @@ pub mod layers;
 pub use caster::Caster;
 pub use error::RenderError;
 pub use film::Film;
+pub use fingerprint::Fingerprint;
 pub use layers::{Layer, LayerPicture, render_layers};
 pub use observer::{Observer, Progress, Silent};
 pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};
@@ -71,5 +78,6 @@ pub use picture::Picture;
 pub use query::Nearest;
 pub use stats::{MemoryPart, Stats};
 pub use tile::{Tile, TilePixels};
-pub use tiles::{Rendering, render, render_missing};
+pub use tile_file::TileFile;
+pub use tiles::{Rendering, develop, render, render_missing};
 pub use world::{Textures, World};

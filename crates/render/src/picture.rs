@@ -135,7 +135,7 @@ impl<'a> Picture<'a> {
     /// # Errors
     /// A picture too large for memory.
     pub fn film(&self) -> Result<Film, RenderError> {
-        Film::new(self.options, self.tiles.clone())
+        Film::new(self.options)
     }
 
     /// Computes a tile; `None` where the observer cancelled it. The observer is asked for nothing else.

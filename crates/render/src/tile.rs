@@ -2,6 +2,7 @@
 
 use crate::options::Options;
 use crate::stats::Stats;
+use xxhash_rust::xxh3::xxh3_64;
 
 /// A part of a picture that is computed at once. Pixels are counted from the upper left of the whole picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -67,9 +68,9 @@ pub struct TilePixels {
 }
 
 /// The four bytes that a stored tile starts with.
-const MARK: [u8; 4] = *b"dtt1";
+pub(crate) const MARK: [u8; 4] = *b"dtt1";
 /// Mark, checksum, tile, channels, counts.
-const HEAD: usize = 4 + 8 + 5 * 4 + 4 + 6 * 8;
+pub(crate) const HEAD: usize = 4 + 8 + 5 * 4 + 4 + 6 * 8;
 
 impl TilePixels {
     /// The tile as bytes, the same on every machine: a mark, a checksum of all that follows it, the tile's five numbers,
@@ -88,7 +89,7 @@ impl TilePixels {
         for sample in &self.samples {
             bytes.extend(sample.to_le_bytes());
         }
-        let sum = checksum(&bytes[12..]);
+        let sum = xxh3_64(&bytes[12..]);
         bytes[4..12].copy_from_slice(&sum.to_le_bytes());
         bytes
     }
@@ -98,7 +99,7 @@ impl TilePixels {
         let (head, pixels) = bytes.split_at_checked(HEAD)?;
         let (mark, head) = head.split_at_checked(4)?;
         let (sum, head) = head.split_at_checked(8)?;
-        if mark != MARK || sum != checksum(bytes.get(12..)?).to_le_bytes() {
+        if mark != MARK || sum != xxh3_64(bytes.get(12..)?).to_le_bytes() {
             return None;
         }
         let (tile, head) = head.split_at_checked(6 * 4)?;
@@ -125,6 +126,12 @@ impl TilePixels {
         pixels.is_whole().then_some(pixels)
     }
 
+    /// The number of the tile that such bytes are of, if they begin like those of a tile.
+    pub(crate) fn number_in(head: &[u8]) -> Option<u32> {
+        let number = head.strip_prefix(&MARK)?.get(8..12)?;
+        Some(u32::from_le_bytes(number.try_into().ok()?))
+    }
+
     /// How many bytes [`TilePixels::to_bytes`] makes of a tile.
     pub fn byte_length(tile: &Tile, channels: u32) -> u64 {
         HEAD as u64 + tile.pixels() * u64::from(channels) * 4
@@ -140,18 +147,6 @@ impl TilePixels {
 fn counts(stats: &Stats) -> [u64; 6] {
     let Stats { eye_rays, shadow_rays, reflected_rays, refracted_rays, box_tests, shape_tests, .. } = *stats;
     [eye_rays, shadow_rays, reflected_rays, refracted_rays, box_tests, shape_tests]
-}
-
-/// FNV-1a over words of eight bytes: tells a torn or rotten tile, not a forged one.
-fn checksum(bytes: &[u8]) -> u64 {
-    let mut sum = 0xcbf2_9ce4_8422_2325_u64 ^ bytes.len() as u64;
-    for chunk in bytes.chunks(8) {
-        let word = chunk.iter().rev().fold(0_u64, |word, byte| word << 8 | u64::from(*byte));
-        sum = (sum ^ word).wrapping_mul(0x0000_0100_0000_01b3);
-        // The product's high bits alone depend on all of the word.
-        sum ^= sum >> 29;
-    }
-    sum
 }
 
 #[cfg(test)]

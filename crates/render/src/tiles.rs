@@ -49,23 +49,41 @@ pub fn render_missing(
 ) -> Result<Rendering, RenderError> {
     let start = Instant::now();
     let film = Mutex::new(film);
-    let options = picture.options();
-    on_threads(options.threads, || develop(picture, &film, observer))?;
+    develop(picture, &film, observer)?;
     let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let complete = film.is_complete();
-    let mut stats = film.counts().clone();
-    let image = film.into_image();
-    stats.memory = picture.world().memory();
-    stats.memory.push(MemoryPart { name: "film", bytes: size_of_val(image.samples()) as u64 });
-    stats.seconds = picture.world().seconds().to_vec();
-    stats.seconds.push(("trace", start.elapsed().as_secs_f64()));
-    Ok(Rendering { image, stats, complete })
+    Ok(Rendering::of(picture, film, start))
+}
+
+impl Rendering {
+    /// What a film holds, and what it cost since `start`.
+    pub fn of(picture: &Picture<'_>, film: Film, start: Instant) -> Self {
+        let complete = film.is_complete();
+        let mut stats = film.counts().clone();
+        let image = film.into_image();
+        stats.memory = picture.world().memory();
+        stats.memory.push(MemoryPart { name: "film", bytes: size_of_val(image.samples()) as u64 });
+        stats.seconds = picture.world().seconds().to_vec();
+        stats.seconds.push(("trace", start.elapsed().as_secs_f64()));
+        Self { image, stats, complete }
+    }
 }
 
 /// The edges of the squares of the looks before the picture itself, for [`Order::CoarseToFine`].
 const COARSE_STEPS: [u32; 2] = [16, 4];
 
-fn develop(picture: &Picture<'_>, film: &Mutex<Film>, observer: &dyn Observer) {
+/// Computes the tiles that a film lacks, unless the observer cancels it; others may look at the film meanwhile.
+///
+/// # Errors
+/// Threads that cannot be started.
+pub fn develop(
+    picture: &Picture<'_>,
+    film: &Mutex<Film>,
+    observer: &dyn Observer,
+) -> Result<(), RenderError> {
+    on_threads(picture.options().threads, || develop_here(picture, film, observer))
+}
+
+fn develop_here(picture: &Picture<'_>, film: &Mutex<Film>, observer: &dyn Observer) {
     let lock = || film.lock().unwrap_or_else(PoisonError::into_inner);
     let missing: Vec<Tile> = lock().missing();
     // One tile a task, so that threads that have finished take over from others.
