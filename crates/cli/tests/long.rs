@@ -80,7 +80,10 @@ fn killed_again_and_again_and_resumed_it_makes_the_same_picture() {
 fn damage_costs_the_damaged_tiles_only() {
     let folder = Folder::new();
     folder.run(&SLOW.replace("a.png", "whole.png")).expect(0);
-    killed(&folder, "");
+    let child = start(&folder, &format!("{SLOW} --checkpoint c.tiles --every 20ms"));
+    await_file(&folder, "c.tiles", 60_000);
+    signal(&child, "-TERM");
+    ended(child).expect(143);
     let whole = folder.get("c.tiles");
     let damaged = |name: &str, change: &dyn Fn(&mut Vec<u8>)| {
         let mut bytes = whole.clone();
@@ -124,7 +127,7 @@ fn a_checkpoint_of_something_else_is_refused_with_the_difference() {
     for (from, to, part) in [
         ("#ambient .2", "#ambient .3", "background and ambient light differ"),
         ("3 4 5 1 0 0", "3 4 6 1 0 0", "lights differ"),
-        ("0 0 0 0 1\n", "0 0 0 0 1.5\n", "shapes differ"),
+        ("#shape_sphere 0 0 0 0 1\n", "#shape_sphere 0 0 0 0 1.5\n", "shapes differ"),
         (".7 .6 .1", ".7 .6 .2", "materials differ"),
     ] {
         let text = common::BALLS.replacen(from, to, 1);
