@@ -79,5 +79,5 @@ pub use query::Nearest;
 pub use stats::{MemoryPart, Stats};
 pub use tile::{Tile, TilePixels};
 pub use tile_file::TileFile;
-pub use tiles::{Rendering, develop, render, render_missing};
+pub use tiles::{Rendering, develop, develop_part, render, render_missing};
 pub use world::{Textures, World};

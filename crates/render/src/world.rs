@@ -99,6 +99,36 @@ impl World {
         textures: Textures,
         options: &PrepareOptions,
     ) -> Result<Self, Vec<Diagnostic>> {
+        Self::build_after(resolved, textures, options, None)
+    }
+
+    /// The same scene after groups have moved, its textures kept. With `refit` the accelerator is fitted to the shapes
+    /// where they are now, which is quick; the picture is the same, but the further they have moved, the longer rays
+    /// take. Without, or where the accelerator cannot be fitted, a new one is built.
+    ///
+    /// # Errors
+    /// A diagnostic for a scene beyond the limits.
+    pub fn moved(
+        self,
+        resolved: Resolved,
+        options: &PrepareOptions,
+        refit: bool,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let Self { textures, caster, .. } = self;
+        Self::build_after(resolved, Textures { textures, seconds: 0.0 }, options, refit.then_some(caster))
+    }
+
+    /// Looks at the scene with another camera.
+    pub fn set_camera(&mut self, camera: model::Camera) {
+        self.camera = camera;
+    }
+
+    fn build_after(
+        resolved: Resolved,
+        textures: Textures,
+        options: &PrepareOptions,
+        former: Option<Caster>,
+    ) -> Result<Self, Vec<Diagnostic>> {
         if resolved.shape_count > MAX_ITEMS {
             return Err(vec![too_many_shapes(resolved.shape_count)]);
         }
@@ -116,7 +146,7 @@ impl World {
         let ambient_lights = with_ambient.map(|(light, tint)| (*light, tint.ambient)).collect();
         let secondary_background = resolved.secondary_background;
         let (camera, background, ambient) = (resolved.camera, resolved.background, resolved.ambient);
-        let caster = Caster::with_default(resolved, default_material, options);
+        let caster = Caster::with_default(resolved, default_material, options, former);
         seconds.extend_from_slice(caster.seconds());
         let bounds = caster.bounds();
         let size = if bounds.is_empty() { 1.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };

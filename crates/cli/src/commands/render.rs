@@ -73,10 +73,12 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     })?;
     interrupt::check()?;
 
+    let deadline = plan.long.time_limit.map(|span| Instant::now() + span.0);
     for (stage, seconds) in seconds.iter().chain(world.seconds()) {
         tracing::debug!(stage, seconds, "done");
     }
-    let Made { rendering: Rendering { image, stats, .. }, keep } = make(&world, &plan, &extras, fingerprint)?;
+    let Made { rendering: Rendering { image, stats, .. }, keep } =
+        make(&world, &plan, &extras, fingerprint, deadline)?;
     seconds.extend(&stats.seconds);
     let looking = Instant::now();
     let layers = layers_of(&world, &plan)?;
