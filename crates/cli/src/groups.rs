@@ -94,7 +94,8 @@ mod tests {
     fn groups_have_paths_and_names() {
         let one = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n";
         let text = format!(
-            "#group_begin // arm\n{one}#group_begin {one}#group_end\n#group_begin // hand \n{one}#group_end\n#group_end\n\
+            "#group_begin // arm\n{one}#group_begin {one}#group_end\n#group_begin // hand \n{one}#group_end\n\
+             #group_end\n\
              #group_begin // arm\n{one}#group_end\n"
         );
         let loaded = load_text("a.ray", text, &Disk, &LoadOptions::default());

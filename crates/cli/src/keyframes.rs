@@ -259,7 +259,8 @@ mod tests {
 
     #[test]
     fn groups_turn_about_their_pivot() {
-        let text = "[[group]]\ngroup = 'arm'\npivot = [1, 0, 0]\naxis = [0, 0, 2]\n[[group.key]]\nframe = 0\nangle = 0\n\
+        let text = "[[group]]\ngroup = 'arm'\npivot = [1, 0, 0]\naxis = [0, 0, 2]\n\
+                    [[group.key]]\nframe = 0\nangle = 0\n\
                     [[group.key]]\nframe = 10\nangle = 90\ntranslate = [0, 0, 5]\nscale = 2";
         let group = animation(text).unwrap().groups.swap_remove(0);
         let end = group.at(10).transform_point3(Vec3::new(2.0, 0.0, 0.0));

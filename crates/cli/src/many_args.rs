@@ -96,8 +96,8 @@ pub struct PlanArgs {
 /// `dotray work`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
-A piece that is there and whole is not made again, and appears whole or not at all: the same command may run twice, at the
-same time even. The scene is looked for where the plan names it, seen from the working directory.
+A piece that is there and whole is not made again, and appears whole or not at all: the same command may run twice, at
+the same time even. The scene is looked for where the plan names it, seen from the working directory.
 
 Examples:
   dotray work room.plan --piece 7 -o pieces
@@ -123,8 +123,8 @@ pub struct WorkArgs {
 /// `dotray merge`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
-Neither scene nor textures are needed. Where pieces are missing or damaged, their numbers are told and the exit code is 1;
-of an animation, the frames that are whole are written.
+Neither scene nor textures are needed. Where pieces are missing or damaged, their numbers are told and the exit code is
+1; of an animation, the frames that are whole are written.
 
 Examples:
   dotray merge room.plan pieces -o room.png

@@ -73,7 +73,7 @@ pub fn write(output: &Place, bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes the picture's file; where that fails, it goes to the folder for temporary files, so that the work is not lost.
+/// Writes the picture's file; where that fails, it goes to the folder for temporary files, so that no work is lost.
 pub fn write_or_rescue(output: &Place, bytes: &[u8]) -> Result<(), Failure> {
     let Err(failure) = write(output, bytes) else { return Ok(()) };
     let (Failure::Failed(message), Place::File(path)) = (&failure, output) else { return Err(failure) };

@@ -105,7 +105,8 @@ fn pieces_take_about_the_same_time() {
         })
         .collect();
     let scene = format!(
-        "#camera 0 0 5 0 0 -1 0 1 0 .4\n#light_point 1 1 1 3 4 5 1 0 0\n#material 0 0 0 .2 .2 .2 .9 .9 .9 0 0 0 .5 .9 1.4 -1 !!\n{glass}"
+        "#camera 0 0 5 0 0 -1 0 1 0 .4\n#light_point 1 1 1 3 4 5 1 0 0\n\
+         #material 0 0 0 .2 .2 .2 .9 .9 .9 0 0 0 .5 .9 1.4 -1 !!\n{glass}"
     );
     folder.put("glass.ray", scene.as_bytes());
     folder.run("plan glass.ray -o a.plan --pieces 6 --size 480x360 --recursion 9 --cutoff 0").expect(0);

@@ -52,8 +52,8 @@ pub fn run(typed: &MergeArgs) -> Result<(), Failure> {
         let of_frames =
             if all > 1 { format!("; {written} of {all} frames were written") } else { String::new() };
         return Err(Failure::Failed(format!(
-            "{count} of {of} pieces are missing or not whole: {}{of_frames}\nmake each of them by: dotray work {} --piece \
-             N -o {}",
+            "{count} of {of} pieces are missing or not whole: {}{of_frames}\nmake each of them by: \
+             dotray work {} --piece N -o {}",
             ranges(&missing),
             typed.plan.display(),
             typed.folder.display()
