@@ -7,7 +7,7 @@
 
 pub mod error;
 
-mod threads;
+pub mod threads;
 
 pub mod options;
 
@@ -57,5 +57,6 @@ pub use layers::{Layer, LayerPicture, render_layers};
 pub use options::{Antialias, Crop, Options, PrepareOptions, Shadows, TextureFilter};
 pub use query::Nearest;
 pub use stats::{MemoryPart, Stats};
+pub use threads::on_threads;
 pub use tiles::{Observer, Rendering, Silent, render};
 pub use world::{Textures, World};

@@ -3,6 +3,7 @@
 use dotray::render::Rendering;
 use dotray::render::Textures;
 use dotray::render::World;
+use dotray::render::on_threads;
 use dotray::render::render;
 use dotray::scene::sources::Sources;
 use std::time::Instant;
@@ -44,7 +45,7 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     interrupt::watch();
     let messages = Messages::new(color, plan.quiet);
     let Understood { mut resolved, sources, disk, text_bytes, mut seconds } =
-        understand(&plan.input, &typed.reading, messages)?;
+        on_threads(plan.options.threads, || understand(&plan.input, &typed.reading, messages))??;
     interrupt::check()?;
     if typed.missing_texture == MissingTexture::White {
         input::whiten(&mut resolved, &disk, plan.quiet);
