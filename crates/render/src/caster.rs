@@ -1,6 +1,6 @@
 //! Rays against shapes, without a picture: what a program needs that casts rays of its own.
 
-use crate::bake::written_shape;
+use crate::bake::world_bounds;
 use crate::options::PrepareOptions;
 use crate::query::Nearest;
 use crate::query::NearestBatch;
@@ -66,8 +66,7 @@ impl Boxes for ShapeBoxes<'_> {
     }
 
     fn bounds(&self, item: u32) -> Aabb {
-        let (_, run, shape) = written_shape(self.runs, self.files, item);
-        shape.world_bounds(&self.frames[run.frame as usize].world_from_object)
+        world_bounds(self.runs, self.frames, self.files, item)
     }
 }
 
