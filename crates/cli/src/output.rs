@@ -1,11 +1,13 @@
 //! Where a picture goes: looked at before minutes are spent on it, written whole or not at all.
 
 use dotray::image::write_file;
+use dotray::image::write_files;
 use std::fs;
 use std::fs::OpenOptions;
 use std::io;
 use std::io::IsTerminal;
 use std::path::Path;
+use std::path::PathBuf;
 
 use crate::exit::Failure;
 use crate::exit::put;
@@ -62,6 +64,15 @@ fn check_file(path: &Path) -> io::Result<()> {
     let probe = folder.join(format!(".dotray-{}-probe.tmp", std::process::id()));
     OpenOptions::new().write(true).create_new(true).open(&probe)?;
     fs::remove_file(&probe)
+}
+
+/// Writes the picture's file and further ones: all of them, or none.
+pub fn write_all(output: &Place, bytes: &[u8], more: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+    let Place::File(path) = output else { return write(output, bytes) };
+    let more = more.iter().map(|(path, bytes)| (path.as_path(), bytes.as_slice()));
+    let files: Vec<_> = std::iter::once((path.as_path(), bytes)).chain(more).collect();
+    // The message names the file.
+    write_files(&files).map_err(|error| Failure::Failed(error.to_string()))
 }
 
 /// Writes the picture's file.

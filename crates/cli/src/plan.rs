@@ -44,6 +44,8 @@ pub struct Plan {
     pub layers: Vec<Layer>,
     /// What is drawn over the picture.
     pub overlay: Option<Overlay>,
+    /// How many levels of boxes.
+    pub overlay_levels: usize,
     /// Print errors only.
     pub quiet: bool,
     /// Whether and how to print what it cost.
@@ -85,6 +87,7 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
         background: typed.background.clone(),
         layers,
         overlay: typed.overlay,
+        overlay_levels: typed.overlay_levels.unwrap_or(usize::MAX),
         quiet: typed.quiet,
         stats: typed.stats,
     })

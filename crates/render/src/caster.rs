@@ -148,6 +148,11 @@ impl Caster {
         self.accelerator.bounds()
     }
 
+    /// The accelerator's boxes (or cells), level by level: the first `most` of them.
+    pub fn accelerator_cells(&self, most: usize) -> Vec<dotray_accel::Cell> {
+        self.accelerator.cells(most)
+    }
+
     /// The accelerator's figures; this looks at every node.
     pub fn accelerator_stats(&self) -> dotray_accel::Stats {
         self.accelerator.stats()

@@ -43,6 +43,8 @@ pub mod shade;
 
 pub mod inspect;
 
+pub mod record;
+
 pub mod trace;
 
 pub mod sampler;

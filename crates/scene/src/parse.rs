@@ -147,6 +147,8 @@ struct Seen {
     textures: usize,
     materials: usize,
     vertices: usize,
+    /// Whether it has been said that the colours of vertices have no effect.
+    vertex_colors: bool,
     includes: usize,
 }
 

@@ -80,10 +80,7 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     seconds.push(("encode", encoding.elapsed().as_secs_f64()));
     interrupt::check()?;
     let writing = Instant::now();
-    output::write(&plan.output, &picture)?;
-    for (path, bytes) in layers {
-        output::write(&Place::File(path), &bytes)?;
-    }
+    output::write_all(&plan.output, &picture, &layers)?;
     seconds.push(("write", writing.elapsed().as_secs_f64()));
     seconds.push(("total", start.elapsed().as_secs_f64()));
 
