@@ -13,6 +13,8 @@ use crate::inspect::RayNode;
 use crate::inspect::Shadow;
 use crate::light::Incident;
 use crate::light::Light;
+use crate::observer::Observer;
+use crate::observer::Silent;
 use crate::options::Options;
 use crate::options::Shadows;
 use crate::query::Crossing;
@@ -56,6 +58,9 @@ pub struct Tracer<'a> {
     inspector: Option<Inspector>,
     /// Who wants to know something of every eye ray.
     recorder: Option<Recorder>,
+    /// Who may stop it.
+    observer: &'a dyn Observer,
+    stopped: bool,
 }
 
 /// Rays with the same number of bounces behind them, side by side.
@@ -135,7 +140,30 @@ impl<'a> Tracer<'a> {
             shadows: ShadowStream::default(),
             inspector: None,
             recorder: None,
+            observer: &Silent,
+            stopped: false,
         }
+    }
+
+    /// The same, stopped once the observer cancels: colours that it gives then mean nothing.
+    pub fn watched_by(self, observer: &'a dyn Observer) -> Self {
+        Self { observer, ..self }
+    }
+
+    /// Who may stop it.
+    pub fn observer(&self) -> &'a dyn Observer {
+        self.observer
+    }
+
+    /// Whether it was stopped, so that the last colours mean nothing and may be too few.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// Asks whether to stop.
+    fn stops(&mut self) -> bool {
+        self.stopped = self.stopped || self.observer.cancelled();
+        self.stopped
     }
 
     /// The colours that the eye rays see.
@@ -162,6 +190,9 @@ impl<'a> Tracer<'a> {
     fn eye_streams(&mut self, eye_rays: &[Ray], mut show: impl FnMut(&Stream<'a>)) {
         self.stats.eye_rays += eye_rays.len() as u64;
         for (number, rays) in eye_rays.chunks(STREAM).enumerate() {
+            if self.stops() {
+                return;
+            }
             let mut stream = self.take_stream();
             stream.rays.extend_from_slice(rays);
             stream.contributions.resize(rays.len(), Vec3::ONE);
@@ -220,6 +251,9 @@ impl<'a> Tracer<'a> {
         let world = self.world;
         let background = if depth == 0 { world.background } else { world.secondary_background };
         stream.colors.resize(stream.rays.len(), background);
+        if self.stops() {
+            return;
+        }
         let together = depth == 0 && self.together();
         self.meet(stream, together);
         self.record_meetings(stream);
@@ -301,6 +335,9 @@ impl<'a> Tracer<'a> {
 
     /// Adds the term of one point lamp to every point that it reaches.
     fn add_light_sample(&mut self, met: &[Met<'_>], from: LightSample<'_>, sums: &mut [Vec3]) {
+        if self.stops() {
+            return;
+        }
         let shadows = &mut self.shadows;
         shadows.rays.clear();
         shadows.ends.clear();
