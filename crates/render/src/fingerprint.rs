@@ -57,8 +57,8 @@ fn said(value: &impl Debug) -> String {
 }
 
 impl Fingerprint {
-    /// Of a picture that `options` ask for: of the scene with all that it includes, as it is understood, of the pixels of
-    /// its textures, and of every option that a pixel depends on. Comments and layout of the text do not count.
+    /// Of a picture that `options` ask for: of the scene with all that it includes, as it is understood, of the pixels
+    /// of its textures, and of every option that a pixel depends on. Comments and layout of the text do not count.
     pub fn of(resolved: &Resolved, textures: &Textures, options: &Options) -> Self {
         let backgrounds = (resolved.background, resolved.secondary_background, resolved.ambient);
         let shapes = shapes(resolved);

@@ -73,8 +73,8 @@ pub(crate) const MARK: [u8; 4] = *b"dtt1";
 pub(crate) const HEAD: usize = 4 + 8 + 5 * 4 + 4 + 6 * 8;
 
 impl TilePixels {
-    /// The tile as bytes, the same on every machine: a mark, a checksum of all that follows it, the tile's five numbers,
-    /// its channels, its six counts, its samples; little endian.
+    /// The tile as bytes, the same on every machine: a mark, a checksum of all that follows it, the tile's five
+    /// numbers, its channels, its six counts, its samples; little endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEAD + 4 * self.samples.len());
         bytes.extend(MARK);

@@ -2,6 +2,7 @@
 
 use dotray::render::Fingerprint;
 use dotray::render::Rendering;
+use dotray::render::Stats;
 use dotray::render::Textures;
 use dotray::render::World;
 use dotray::render::on_threads;
@@ -98,9 +99,21 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     seconds.push(("write", writing.elapsed().as_secs_f64()));
     seconds.push(("total", start.elapsed().as_secs_f64()));
 
+    say_done(&plan, start);
+    say_cost(&plan, &cost(&plan, &world, &stats, text_bytes, seconds))
+}
+
+/// What the picture cost.
+fn cost(
+    plan: &Plan,
+    world: &World,
+    stats: &Stats,
+    text_bytes: u64,
+    seconds: Vec<(&'static str, f64)>,
+) -> Cost {
     let tracing = seconds.iter().find(|(stage, _)| *stage == "trace").map_or(0.0, |(_, seconds)| *seconds);
     let window = plan.options.window();
-    let cost = Cost {
+    Cost {
         version: env!("CARGO_PKG_VERSION"),
         scene: shown(&plan.input),
         picture: shown(&plan.output),
@@ -108,15 +121,13 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
         height: window.height,
         accelerator: plan.prepare.accel.name(),
         simd: dotray::accel::simd::level_name(dotray::accel::simd::level()),
-        threads: threads(&plan),
+        threads: threads(plan),
         shapes: world.shape_count(),
-        rays: Rays::new(&stats, tracing),
-        tests: Tests::new(&stats),
+        rays: Rays::new(stats, tracing),
+        tests: Tests::new(stats),
         memory: memory(text_bytes, &stats.memory),
         seconds,
-    };
-    say_done(&plan, start);
-    say_cost(&plan, &cost)
+    }
 }
 
 /// The failure, and where the finished tiles are.
