@@ -55,7 +55,7 @@ pub use caster::Caster;
 pub use error::RenderError;
 pub use layers::{Layer, LayerPicture, render_layers};
 pub use options::{Antialias, Crop, Options, PrepareOptions, Shadows, TextureFilter};
-pub use query::Nearest;
+pub use query::{Crossing, Nearest};
 pub use stats::{MemoryPart, Stats};
 pub use tiles::{Observer, Rendering, Silent, render};
 pub use world::{Textures, World};
