@@ -2,6 +2,7 @@
 
 use crate::bake::world_bounds;
 use crate::options::PrepareOptions;
+use crate::query::Crossing;
 use crate::query::Nearest;
 use crate::query::NearestBatch;
 use crate::query::NearestBuffers;
@@ -131,6 +132,17 @@ impl Caster {
         let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| false, &mut buffers);
         self.accelerator.walk_rays(self.level, queries, &mut batch, together);
         buffers.blockers.iter().map(|&blocker| blocker != UNBLOCKED).collect()
+    }
+
+    /// Every surface that each ray crosses between its bounds, ray by ray and nearest first: a ray enters a sphere and
+    /// leaves it.
+    pub fn crossings(&self, queries: &Queries<'_>, together: bool) -> Vec<Crossing> {
+        let mut buffers = ShadowBuffers::default();
+        // To a shadow ray for which everything is see-through nothing is hidden.
+        let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| true, &mut buffers);
+        self.accelerator.walk_rays(self.level, queries, &mut batch, together);
+        batch.finish();
+        buffers.crossings
     }
 
     /// The surface that `ray` met at `nearest`.

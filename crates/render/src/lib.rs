@@ -77,7 +77,7 @@ pub use layers::{Layer, LayerPicture, render_layers};
 pub use observer::{Observer, Progress, Silent};
 pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};
 pub use picture::Picture;
-pub use query::Nearest;
+pub use query::{Crossing, Nearest};
 pub use stats::{MemoryPart, Stats};
 pub use threads::on_threads;
 pub use tile::{Tile, TilePixels};

@@ -141,6 +141,19 @@ impl World {
         &self.camera
     }
 
+    /// The same scene seen by another camera: nothing is built anew.
+    pub fn set_camera(&mut self, camera: model::Camera) {
+        self.camera = camera;
+    }
+
+    /// The same shapes under other light, as a scene in the slides' own dialect has it: nothing is built anew.
+    pub fn set_light(&mut self, background: Vec3, ambient: Vec3, lights: &[model::Light]) {
+        (self.background, self.secondary_background, self.ambient) = (background, background, ambient);
+        self.lights = lights.iter().map(Light::new).collect();
+        self.tints = vec![Tint::PLAIN; lights.len()];
+        self.ambient_lights.clear();
+    }
+
     /// The lights, by number.
     pub fn lights(&self) -> &[Light] {
         &self.lights
