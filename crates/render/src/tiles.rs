@@ -25,7 +25,7 @@ use std::collections::HashMap;
 use std::sync::Condvar;
 use std::sync::Mutex;
 use std::sync::PoisonError;
-use std::time::Instant;
+use web_time::Instant;
 
 /// How far a picture has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
