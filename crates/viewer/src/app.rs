@@ -24,6 +24,20 @@ pub struct App {
     wake: crate::link::Wake,
     #[cfg(not(target_arch = "wasm32"))]
     watch: Option<Watch>,
+    #[cfg(target_arch = "wasm32")]
+    dropped: std::rc::Rc<std::cell::RefCell<Arrivals>>,
+}
+
+/// Files that were dropped on the page: the browser reads them by and by.
+#[cfg(target_arch = "wasm32")]
+#[derive(Default)]
+struct Arrivals {
+    files: crate::memory::Dropped,
+    awaited: usize,
+    /// The scene among those that have come since the last look.
+    scene: Option<std::path::PathBuf>,
+    any: bool,
+    fault: Option<String>,
 }
 
 /// What is asked for at the start.
@@ -56,6 +70,8 @@ impl App {
             wake,
             #[cfg(not(target_arch = "wasm32"))]
             watch: None,
+            #[cfg(target_arch = "wasm32")]
+            dropped: Default::default(),
         }
     }
 
@@ -66,6 +82,48 @@ impl App {
         if let Some(path) = dropped.first().map(|file| file.path().to_path_buf()) {
             self.state.open(Source { path, files: Arc::new(Disk) });
             self.watch = None;
+        }
+    }
+
+    /// Files that were dropped on the page; when all have been read, the scene among them is shown, or the one that is
+    /// shown already is read again with its new textures.
+    #[cfg(target_arch = "wasm32")]
+    fn take_dropped(&mut self, ctx: &egui::Context) {
+        for file in ctx.input(|input| input.raw.dropped_files.clone()) {
+            self.dropped.borrow_mut().awaited += 1;
+            let (dropped, wake) = (self.dropped.clone(), self.wake.clone());
+            wasm_bindgen_futures::spawn_local(async move {
+                let path = file.path().to_path_buf();
+                let content = file.bytes_async().await;
+                let mut dropped = dropped.borrow_mut();
+                dropped.awaited -= 1;
+                match content {
+                    Ok(content) => dropped.take(path, content),
+                    Err(fault) => dropped.fault = Some(format!("cannot read `{}`: {fault}", path.display())),
+                }
+                wake();
+            });
+        }
+        let mut dropped = self.dropped.borrow_mut();
+        if let Some(fault) = dropped.fault.take() {
+            self.state.notice = fault;
+        }
+        if dropped.awaited > 0 || !std::mem::take(&mut dropped.any) {
+            return;
+        }
+        let shown = self.state.source.as_ref().map(|source| source.path.clone());
+        let scene = dropped.scene.take();
+        if let Some(path) = scene.clone().or(shown.clone()) {
+            let source = Source { path, files: Arc::new(dropped.files.clone()) };
+            drop(dropped);
+            if scene.is_some() && scene != shown {
+                self.state.open(source);
+            } else {
+                self.state.source = Some(source);
+                self.state.reload();
+            }
+        } else {
+            self.state.notice = "there is no .ray file among these: drop one, too".to_owned();
         }
     }
 
@@ -192,14 +250,24 @@ impl App {
     }
 }
 
+#[cfg(target_arch = "wasm32")]
+impl Arrivals {
+    fn take(&mut self, path: std::path::PathBuf, content: Vec<u8>) {
+        let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ray"));
+        if is_scene && self.scene.is_none() {
+            self.scene = Some(path.clone());
+        }
+        self.files.add(&path, content);
+        self.any = true;
+    }
+}
+
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        self.take_dropped(&ctx);
         #[cfg(not(target_arch = "wasm32"))]
-        {
-            self.take_dropped(&ctx);
-            self.follow_files(&ctx);
-        }
+        self.follow_files(&ctx);
         let opened = self.state.take_news(&ctx);
         #[cfg(not(target_arch = "wasm32"))]
         if opened {

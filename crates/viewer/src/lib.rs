@@ -12,6 +12,8 @@ pub mod edit;
 
 pub mod hidden;
 
+pub mod memory;
+
 pub mod pictures;
 
 pub mod tables;
@@ -51,3 +53,6 @@ pub mod watch;
 
 #[cfg(feature = "screen")]
 pub mod app;
+
+#[cfg(all(feature = "screen", target_arch = "wasm32"))]
+pub mod web;

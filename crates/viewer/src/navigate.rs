@@ -26,12 +26,13 @@ impl Navigator {
     /// Starts at the file's camera and turns around what lies ahead of it in the middle of the scene.
     pub fn new(camera: Camera, bounds: &Aabb) -> Self {
         let size = if bounds.is_empty() { 1.0 } else { bounds.size().length().max(f64::MIN_POSITIVE) };
-        let home = upright(camera);
-        let middle = if bounds.is_empty() { home.position } else { bounds.center() };
-        let ahead = (middle - home.position).dot(home.direction);
+        let middle = if bounds.is_empty() { camera.position } else { bounds.center() };
+        let direction = camera.direction.normalize();
+        let ahead = (middle - camera.position).dot(direction);
         let ahead = if ahead > NEAREST * size { ahead } else { size / 2.0 };
-        let pivot = home.position + home.direction * ahead;
-        Self { camera: home, pivot, home, home_pivot: pivot, size }
+        let pivot = camera.position + direction * ahead;
+        // The file's camera is kept as it is written, to the last bit: so is its picture.
+        Self { camera, pivot, home: camera, home_pivot: pivot, size }
     }
 
     /// The same view of a scene that has been read again: what the user did stays, home is the new file's camera.
@@ -69,7 +70,7 @@ impl Navigator {
 
     /// Right, up and ahead, each of length 1.
     pub fn axes(&self) -> [Vec3; 3] {
-        let ahead = self.camera.direction;
+        let ahead = self.camera.direction.normalize();
         let right = ahead.cross(self.camera.up).normalize();
         [right, right.cross(ahead), ahead]
     }
@@ -93,8 +94,8 @@ impl Navigator {
     /// The rotation about the vertical and about the horizontal axis; it stops short of the poles.
     fn turn(&self, right: f64, up: f64) -> Mat3 {
         let vertical = self.camera.up.normalize();
-        let [across, ..] = self.axes();
-        let angle = libm::acos(self.camera.direction.dot(vertical).clamp(-1.0, 1.0));
+        let [across, _, ahead] = self.axes();
+        let angle = libm::acos(ahead.dot(vertical).clamp(-1.0, 1.0));
         let up = up.clamp(-(std::f64::consts::PI - POLE - angle).max(0.0), (angle - POLE).max(0.0));
         Mat3::from_axis_angle(vertical, -right) * Mat3::from_axis_angle(across, up)
     }
@@ -113,7 +114,8 @@ impl Navigator {
     /// Comes nearer (a factor below 1) or goes away.
     pub fn dolly(&mut self, factor: f64) {
         let reach = (self.reach() * factor).clamp(NEAREST * self.size, 1e4 * self.size);
-        self.camera.position = self.pivot - self.camera.direction * reach;
+        let [.., ahead] = self.axes();
+        self.camera.position = self.pivot - ahead * reach;
     }
 
     /// Flies: parts of the scene's size to the right, up, and ahead.
@@ -136,14 +138,10 @@ impl Navigator {
         let half_height = self.camera.half_angle;
         let half_width = libm::atan(libm::tan(half_height) * aspect);
         let reach = radius / libm::sin(half_height.min(half_width));
+        let [.., ahead] = self.axes();
         self.pivot = bounds.center();
-        self.camera.position = self.pivot - self.camera.direction * reach;
+        self.camera.position = self.pivot - ahead * reach;
     }
-}
-
-/// The same view with a direction of length 1.
-fn upright(camera: Camera) -> Camera {
-    Camera { direction: camera.direction.normalize(), up: camera.up.normalize(), ..camera }
 }
 
 #[cfg(test)]

@@ -50,8 +50,8 @@ impl Panels {
     pub fn show(&mut self, ui: &mut egui::Ui, state: &mut State) {
         egui::Panel::top("toolbar").show(ui, |ui| toolbar::show(self, ui, state));
         egui::Panel::bottom("status").show(ui, |ui| status::show(ui, state));
-        egui::Panel::left("scene").default_size(300.0).show(ui, |ui| self.left(ui, state));
-        egui::Panel::right("tracing").default_size(290.0).show(ui, |ui| {
+        egui::Panel::left("scene").exact_size(300.0).show(ui, |ui| self.left(ui, state));
+        egui::Panel::right("tracing").exact_size(310.0).show(ui, |ui| {
             tracing::show(self, ui, state);
             ui.separator();
             rays::show(ui, state);

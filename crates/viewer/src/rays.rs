@@ -39,19 +39,25 @@ pub struct RayRow {
     pub ends: [Option<End>; 2],
 }
 
-/// A light, or one sample of one, at the end of a ray.
+/// A light at the end of a ray, its samples taken together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightRow {
     /// Its number.
     pub light: u32,
-    /// Where it is; far away for parallel light. `None` where it sends nothing.
-    pub to: Option<Vec3>,
+    /// How many points stand for it.
+    pub samples: u32,
+    /// How many of them would shine here if nothing lay between.
+    pub shining: u32,
+    /// How many of those something hides.
+    pub blocked: u32,
+    /// A shape that hides it.
+    pub blocker: Option<u32>,
+    /// How many surfaces it shines through, all points together.
+    pub crossed: usize,
     /// What it gives after all shadows.
     pub gives: Vec3,
-    /// The shape that blocks it.
-    pub blocked: Option<u32>,
-    /// How many surfaces it shines through.
-    pub crossed: usize,
+    /// Where some of its points are, far away for parallel light, and whether something hides them.
+    pub points: Vec<(Vec3, bool)>,
 }
 
 /// The tree as a list, mirrored rays before refracted ones. A ray that met nothing is `far` long.
@@ -92,26 +98,46 @@ fn row(node: &RayNode, far: f64) -> RayRow {
         weight: node.weight,
         direct: met.map_or(node.color, |met| met.direct()),
         lights: met.map_or_else(Vec::new, |met| {
-            met.lights.iter().map(|term| light_row(term, met.surface.point, far)).collect()
+            let lights = met.lights.chunk_by(|a, b| a.light == b.light);
+            lights.map(|terms| light_row(terms, met.surface.point, far)).collect()
         }),
         ends: met.map_or([None, None], |met| [ended(&met.reflected), ended(&met.refracted)]),
     }
 }
 
-fn light_row(term: &LightTerm, point: Vec3, far: f64) -> LightRow {
-    let (blocked, crossed) = match &term.shadow {
-        Shadow::NotAsked => (None, 0),
-        Shadow::Blocked { number, .. } => (Some(*number), 0),
-        Shadow::Crossed(crossings) => (None, crossings.len()),
+fn light_row(terms: &[LightTerm], point: Vec3, far: f64) -> LightRow {
+    let first = terms.first();
+    let mut row = LightRow {
+        light: first.map_or(0, |term| term.light),
+        samples: first.map_or(0, |term| term.samples),
+        shining: 0,
+        blocked: 0,
+        blocker: None,
+        crossed: 0,
+        gives: Vec3::ZERO,
+        points: Vec::new(),
     };
-    LightRow {
-        light: term.light,
-        to: term.incident.map(|incident| point + incident.towards * incident.distance.min(far)),
-        gives: term.lit * term.filter / f64::from(term.samples.max(1)),
-        blocked,
-        crossed,
+    for term in terms {
+        let Some(incident) = term.incident else { continue };
+        row.shining += u32::from(term.lit != Vec3::ZERO);
+        let mut hidden = false;
+        match &term.shadow {
+            Shadow::NotAsked => {}
+            Shadow::Blocked { number, .. } => {
+                (row.blocked, row.blocker, hidden) = (row.blocked + 1, Some(*number), true);
+            }
+            Shadow::Crossed(crossings) => row.crossed += crossings.len(),
+        }
+        if row.points.len() < SAMPLES_DRAWN {
+            row.points.push((point + incident.towards * incident.distance.min(far), hidden));
+        }
+        row.gives += term.lit * term.filter / f64::from(term.samples.max(1));
     }
+    row
 }
+
+/// Of an area light's samples so many are drawn.
+const SAMPLES_DRAWN: usize = 8;
 
 /// A line in the world with its colour, red, green, blue and alpha.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,9 +147,6 @@ pub struct Line {
     /// Its colour.
     pub color: [u8; 4],
 }
-
-/// Of an area light's samples so many are drawn.
-const SAMPLES_DRAWN: usize = 8;
 
 /// Eye rays are yellow, mirrored ones blue, refracted ones green, rays to lights pale, and red where something blocks;
 /// normals are white. `chosen` is drawn bright, the others faint; `None` draws all bright.
@@ -143,11 +166,8 @@ pub fn lines(rows: &[RayRow], chosen: Option<usize>, normal_length: f64) -> Vec<
         if row.met.is_some() {
             draw(row.to, row.to + row.normal * normal_length, [255, 255, 255]);
         }
-        for light in row.lights.iter().take(SAMPLES_DRAWN) {
-            if let Some(to) = light.to {
-                let color = if light.blocked.is_some() { [240, 70, 60] } else { [240, 230, 170] };
-                draw(row.to, to, color);
-            }
+        for (to, hidden) in row.lights.iter().flat_map(|light| &light.points) {
+            draw(row.to, *to, if *hidden { [240, 70, 60] } else { [240, 230, 170] });
         }
     }
     lines

@@ -238,7 +238,7 @@ impl State {
                     return;
                 };
                 (traced.done, traced.seconds, traced.image) = (done, seconds, image);
-                let shown = egui::ColorImage::from_rgba_unmultiplied(size, &pixels);
+                let shown = egui::ColorImage::from_rgba_premultiplied(size, &pixels);
                 match &mut traced.texture {
                     Some(texture) => texture.set(shown, egui::TextureOptions::NEAREST),
                     None => {

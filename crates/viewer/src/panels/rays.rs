@@ -43,10 +43,10 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     let [x, y] = rays.pixel;
     ui.strong(format!("Rays of pixel {x}, {y}"));
     ui.horizontal(|ui| {
-        if ui.button("◀").on_hover_text("P").clicked() {
+        if ui.button("Previous").on_hover_text("P").clicked() {
             chosen = Some(chosen.map_or(rays.rows.len().saturating_sub(1), |at| at.saturating_sub(1)));
         }
-        if ui.button("▶").on_hover_text("N").clicked() {
+        if ui.button("Next").on_hover_text("N").clicked() {
             chosen = Some(chosen.map_or(0, |at| (at + 1).min(rays.rows.len().saturating_sub(1))));
         }
         if ui.selectable_label(chosen.is_none(), "all").clicked() {
@@ -64,7 +64,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
             for at in range {
                 let Some(row) = rays.rows.get(at) else { continue };
                 let text = ray_name(state.document.as_ref(), row);
-                if ui.selectable_label(chosen == Some(at), text).clicked() {
+                if ui.add(egui::Button::selectable(chosen == Some(at), text).truncate()).clicked() {
                     chosen = Some(at);
                 }
             }
@@ -98,14 +98,14 @@ fn ray_name(document: Option<&Document>, row: &RayRow) -> String {
             None => format!("shape {number}"),
         },
     );
-    format!("{indent}{kind} → {met}")
+    format!("{indent}{kind}: {met}")
 }
 
 fn details(ui: &mut Ui, row: &RayRow, document: &Document) {
     egui::Grid::new("ray").num_columns(2).show(ui, |ui| {
         let mut line = |name: &str, value: String| {
             ui.label(name);
-            ui.monospace(value);
+            ui.add(egui::Label::new(RichText::new(value).monospace()).truncate());
             ui.end_row();
         };
         if let Some((number, material)) = row.met {
@@ -124,7 +124,7 @@ fn details(ui: &mut Ui, row: &RayRow, document: &Document) {
         for (name, end) in [("mirrored", row.ends[0]), ("refracted", row.ends[1])] {
             if let Some(end) = end {
                 ui.label(name);
-                ui.label(RichText::new(end_text(end)).weak());
+                ui.add(egui::Label::new(RichText::new(end_text(end)).weak()).truncate());
                 ui.end_row();
             }
         }
@@ -132,7 +132,7 @@ fn details(ui: &mut Ui, row: &RayRow, document: &Document) {
             ui.label(format!("light {}", light.light));
             ui.horizontal(|ui| {
                 swatch(ui, light.gives);
-                ui.label(RichText::new(between(light)).weak());
+                ui.add(egui::Label::new(RichText::new(between(light)).weak()).truncate());
             });
             ui.end_row();
         }
@@ -140,10 +140,12 @@ fn details(ui: &mut Ui, row: &RayRow, document: &Document) {
 }
 
 fn between(light: &LightRow) -> String {
-    match (light.blocked, light.crossed, light.to) {
-        (Some(number), _, _) => format!("behind shape {number}"),
-        (None, 0, Some(_)) => String::new(),
-        (None, 0, None) => "does not shine here".to_owned(),
-        (None, crossed, _) => format!("through {crossed} surfaces"),
+    let LightRow { samples, shining, blocked, blocker, crossed, .. } = light;
+    match (blocker, samples) {
+        _ if *shining == 0 => "does not shine here".to_owned(),
+        (Some(number), 1) => format!("behind shape {number}"),
+        (Some(_), _) => format!("{blocked} of {samples} points hidden"),
+        (None, _) if *crossed > 0 => "through surfaces".to_owned(),
+        (None, _) => String::new(),
     }
 }

@@ -98,22 +98,20 @@ fn line(ui: &mut Ui, state: &State, row: Row) -> Option<Asked> {
         let depth = node.depth.min(12) + u32::from(row.shape.is_some());
         ui.add_space(depth as f32 * 12.0);
         let opens = row.shape.is_none() && document.outline.can_open(row.node);
-        let sign = if !opens {
-            "  "
-        } else if document.outline.is_open(row.node) {
-            "▼"
-        } else {
-            "▶"
-        };
-        if ui.add_sized([16.0, 16.0], egui::Button::new(sign).frame(false)).clicked() && opens {
-            asked = Some(Asked::Toggle(row.node));
+        let (_, arrow) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::click());
+        if opens {
+            let openness = f32::from(u8::from(document.outline.is_open(row.node)));
+            egui::collapsing_header::paint_default_icon(ui, openness, &arrow);
+            if arrow.clicked() {
+                asked = Some(Asked::Toggle(row.node));
+            }
         }
         let mut shown = !state.hidden.covers(&shapes);
         if ui.checkbox(&mut shown, "").on_hover_text("Shown").changed() {
             asked = Some(Asked::Show(shapes.clone(), shown));
         }
         let is_selected = state.selection.as_ref().is_some_and(|s| s.shapes == shapes);
-        let label = ui.selectable_label(is_selected, document.row_name(row));
+        let label = ui.add(egui::Button::selectable(is_selected, document.row_name(row)).truncate());
         if label.clicked() {
             asked = Some(Asked::Select(shapes.clone()));
         }
