@@ -26,7 +26,7 @@ use dotray_scene::Resolved;
 use dotray_scene::model::SceneFile;
 use dotray_scene::resolved::Run;
 use dotray_scene::resolved::TreeEvent;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Baked shapes and the accelerator over them.
 ///
