@@ -12,6 +12,10 @@ use crate::inspect_args::TreeArgs;
 use crate::judge_args::CompareArgs;
 use crate::judge_args::GradeArgs;
 use crate::log::LogFormat;
+use crate::many_args::AnimateArgs;
+use crate::many_args::MergeArgs;
+use crate::many_args::PlanArgs;
+use crate::many_args::WorkArgs;
 use crate::reading_args::DialectName;
 use crate::reading_args::LimitArgs;
 use crate::reading_args::ReadingArgs;
@@ -86,6 +90,14 @@ Environment:
 pub enum Command {
     /// Make a picture of a scene.
     Render(Box<RenderArgs>),
+    /// Make the frames of an animation, and a movie of them.
+    Animate(Box<AnimateArgs>),
+    /// Cut a picture or an animation into pieces for many machines.
+    Plan(Box<PlanArgs>),
+    /// Compute one piece of a plan.
+    Work(WorkArgs),
+    /// Put the pieces of a plan together.
+    Merge(MergeArgs),
     /// Tell every fault and warning of scenes, with place and likely repair.
     Check(CheckArgs),
     /// Put scene files into their canonical layout; numbers and comments stay as written.

@@ -12,6 +12,8 @@ mod long_args;
 
 mod render_args;
 
+mod many_args;
+
 mod check_args;
 
 mod judge_args;
@@ -73,6 +75,20 @@ mod extras;
 mod keep;
 
 mod making;
+
+mod curve;
+
+mod keyframes;
+
+mod groups;
+
+mod numbered;
+
+mod pieces;
+
+mod stage;
+
+mod movie;
 
 mod reference;
 

@@ -136,12 +136,13 @@ impl Work<'_> {
     }
 }
 
-/// Traces the picture; with a fingerprint, its checkpoint is kept.
+/// Traces the picture until the deadline; with a fingerprint, its checkpoint is kept.
 pub fn make(
     world: &World,
     plan: &Plan,
     extras: &Extras,
     fingerprint: Option<Fingerprint>,
+    deadline: Option<Instant>,
 ) -> Result<Made, Failure> {
     let start = Instant::now();
     let long = &plan.long;
@@ -165,7 +166,7 @@ pub fn make(
     let overseer = Overseer {
         watcher,
         keep: keep.as_ref(),
-        deadline: long.time_limit.map(|span| start + span.0),
+        deadline,
         late: AtomicBool::new(false),
         ended: Mutex::new(false),
         end: Condvar::new(),
@@ -196,7 +197,8 @@ pub fn make(
 fn stopped(work: &Work<'_>, keep: Option<&Keep>, late: bool) -> Failure {
     let percent = work.percent();
     let mut kept = Vec::new();
-    if late || work.plan.long.partial_every.is_some() {
+    let long = &work.plan.long;
+    if late && long.time_limit.is_some() || long.partial_every.is_some() {
         match (work.write_partial(), &work.plan.output) {
             (Ok(()), Place::File(path)) => {
                 kept.push(format!("`{}` holds {percent} % of the picture", path.display()));

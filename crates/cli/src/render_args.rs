@@ -21,7 +21,7 @@ use crate::values::Size;
 use crate::values::TextOrJson;
 
 /// `dotray render`.
-#[derive(Debug, Args, Default)]
+#[derive(Clone, Debug, Args, Default)]
 #[command(
     override_usage = "dotray render [OPTIONS] IN [OUT] [WIDTH HEIGHT [RECURSION [CUTOFF]]]",
     allow_negative_numbers = true,

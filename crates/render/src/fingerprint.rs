@@ -121,6 +121,13 @@ impl Fingerprint {
         self
     }
 
+    /// The same with a hash of these bytes.
+    pub fn with_hash_of(self, name: &str, bytes: &[u8]) -> Self {
+        let mut hash = Hash::new();
+        hash.0.update(bytes);
+        self.with(name, &hash.text())
+    }
+
     /// Names and values.
     pub fn entries(&self) -> &[(String, String)] {
         &self.entries

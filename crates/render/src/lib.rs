@@ -82,5 +82,5 @@ pub use stats::{MemoryPart, Stats};
 pub use threads::on_threads;
 pub use tile::{Tile, TilePixels};
 pub use tile_file::TileFile;
-pub use tiles::{Rendering, develop, render, render_missing};
+pub use tiles::{Rendering, develop, develop_part, render, render_missing};
 pub use world::{Textures, World};

@@ -67,6 +67,11 @@ impl Shapes {
         self.baked.numbers.len()
     }
 
+    /// The shape number at each position, all else let go.
+    pub(crate) fn into_numbers(self) -> Vec<u32> {
+        self.baked.numbers
+    }
+
     /// Whether there is no shape.
     pub fn is_empty(&self) -> bool {
         self.baked.numbers.is_empty()

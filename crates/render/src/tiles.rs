@@ -80,15 +80,28 @@ pub fn develop(
     film: &Mutex<Film>,
     observer: &dyn Observer,
 ) -> Result<(), RenderError> {
-    on_threads(picture.options().threads, || develop_here(picture, film, observer))
+    let missing = film.lock().unwrap_or_else(PoisonError::into_inner).missing();
+    develop_part(picture, film, &missing, observer)
 }
 
-fn develop_here(picture: &Picture<'_>, film: &Mutex<Film>, observer: &dyn Observer) {
+/// Computes these tiles, unless the observer cancels it.
+///
+/// # Errors
+/// Threads that cannot be started.
+pub fn develop_part(
+    picture: &Picture<'_>,
+    film: &Mutex<Film>,
+    tiles: &[Tile],
+    observer: &dyn Observer,
+) -> Result<(), RenderError> {
+    on_threads(picture.options().threads, || develop_here(picture, film, tiles, observer))
+}
+
+fn develop_here(picture: &Picture<'_>, film: &Mutex<Film>, tiles: &[Tile], observer: &dyn Observer) {
     let lock = || film.lock().unwrap_or_else(PoisonError::into_inner);
-    let missing: Vec<Tile> = lock().missing();
     // One tile a task, so that threads that have finished take over from others.
     let each = |work: &(dyn Fn(&Tile) + Sync)| {
-        missing.par_iter().with_max_len(1).filter(|_| !observer.cancelled()).for_each(work);
+        tiles.par_iter().with_max_len(1).filter(|_| !observer.cancelled()).for_each(work);
     };
     match picture.options().order {
         Order::Morton => {}

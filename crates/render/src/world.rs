@@ -99,6 +99,31 @@ impl World {
         textures: Textures,
         options: &PrepareOptions,
     ) -> Result<Self, Vec<Diagnostic>> {
+        Self::build_after(resolved, textures, options, None)
+    }
+
+    /// The same scene after groups have moved, its textures kept. With `refit` the accelerator is fitted to the shapes
+    /// where they are now, which is quick; the picture is the same, but the further they have moved, the longer rays
+    /// take. Without, or where the accelerator cannot be fitted, a new one is built.
+    ///
+    /// # Errors
+    /// A diagnostic for a scene beyond the limits.
+    pub fn moved(
+        self,
+        resolved: Resolved,
+        options: &PrepareOptions,
+        refit: bool,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let Self { textures, caster, .. } = self;
+        Self::build_after(resolved, Textures { textures, seconds: 0.0 }, options, refit.then_some(caster))
+    }
+
+    fn build_after(
+        resolved: Resolved,
+        textures: Textures,
+        options: &PrepareOptions,
+        former: Option<Caster>,
+    ) -> Result<Self, Vec<Diagnostic>> {
         if resolved.shape_count > MAX_ITEMS {
             return Err(vec![too_many_shapes(resolved.shape_count)]);
         }
@@ -111,7 +136,7 @@ impl World {
         let (lights, tints) = (std::mem::take(&mut resolved.lights), std::mem::take(&mut resolved.tints));
         let secondary_background = resolved.secondary_background;
         let (camera, background, ambient) = (resolved.camera, resolved.background, resolved.ambient);
-        let caster = Caster::with_default(resolved, default_material, options);
+        let caster = Caster::with_default(resolved, default_material, options, former);
         seconds.extend_from_slice(caster.seconds());
         let bounds = caster.bounds();
         let size = if bounds.is_empty() { 1.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
@@ -134,8 +159,8 @@ impl World {
     }
 
     /// Puts the lights, materials, background and ambient light of another resolution of the same scene in place of its
-    /// own; the shapes stay, so this costs as much as there are lights and materials. Materials must be as many and name
-    /// the same textures as before; otherwise nothing changes.
+    /// own; the shapes stay, so this costs as much as there are lights and materials. Materials must be as many and
+    /// name the same textures as before; otherwise nothing changes.
     pub fn restyle(&mut self, style: &Resolved) {
         let same_texture = |(a, b): (&ResolvedMaterial, &ResolvedMaterial)| a.texture == b.texture;
         let fits = self.materials.len() == style.materials.len();
@@ -170,9 +195,7 @@ impl World {
     /// The same shapes under other light, as a scene in the slides' own dialect has it: nothing is built anew.
     pub fn set_light(&mut self, background: Vec3, ambient: Vec3, lights: &[model::Light]) {
         (self.background, self.secondary_background, self.ambient) = (background, background, ambient);
-        self.lights = lights.iter().map(Light::new).collect();
-        self.tints = vec![Tint::PLAIN; lights.len()];
-        self.ambient_lights.clear();
+        self.set_lights(lights, Vec::new());
     }
 
     /// The lights, by number.

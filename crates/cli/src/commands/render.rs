@@ -43,23 +43,27 @@ use crate::values::When;
 use std::io::IsTerminal;
 use std::io::Write;
 
-/// Makes the picture and says what it cost.
-pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
-    let start = Instant::now();
-    let plan = plan(typed)?;
-    if plan.long.progress == ProgressName::Json {
-        events::start("render", &shown(&plan.input), &shown(&plan.output));
-    }
-    output::check(&plan.output, &plan.input)?;
-    interrupt::watch();
-    let messages = Messages::new(color, plan.quiet);
-    let Understood { mut resolved, sources, disk, text_bytes, mut seconds } =
+/// A scene that is ready for tracing.
+struct Ready {
+    world: World,
+    extras: Extras,
+    /// Of the picture, where its tiles are to be kept.
+    fingerprint: Option<Fingerprint>,
+    /// Bytes of text.
+    text_bytes: u64,
+    /// Seconds by stage.
+    seconds: Vec<(&'static str, f64)>,
+}
+
+/// Reads the scene and makes it ready, within the limits.
+fn ready(typed: &RenderArgs, plan: &Plan, messages: Messages) -> Result<Ready, Failure> {
+    let Understood { mut resolved, sources, disk, text_bytes, seconds } =
         on_threads(plan.options.threads, || understand(&plan.input, &typed.reading, messages))??;
     interrupt::check()?;
     if typed.missing_texture == MissingTexture::White {
         input::whiten(&mut resolved, &disk, plan.quiet);
     }
-    let extras = Extras::new(&plan, &mut resolved, &sources)?;
+    let extras = Extras::new(plan, &mut resolved, &sources)?;
     limits::check(&resolved, &plan.prepare, Some(&plan.options), &typed.reading.limits)?;
     let textures = Textures::load(&resolved, &disk, &plan.prepare).map_err(|faults| {
         messages.print(&faults, &sources);
@@ -74,11 +78,26 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
         Failure::Reported
     })?;
     interrupt::check()?;
+    Ok(Ready { world, extras, fingerprint, text_bytes, seconds })
+}
 
+/// Makes the picture and says what it cost.
+pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
+    let start = Instant::now();
+    let plan = plan(typed)?;
+    if plan.long.progress == ProgressName::Json {
+        events::start("render", &shown(&plan.input), &shown(&plan.output));
+    }
+    output::check(&plan.output, &plan.input)?;
+    interrupt::watch();
+    let messages = Messages::new(color, plan.quiet);
+    let Ready { world, extras, fingerprint, text_bytes, mut seconds } = ready(typed, &plan, messages)?;
+    let deadline = plan.long.time_limit.map(|span| Instant::now() + span.0);
     for (stage, seconds) in seconds.iter().chain(world.seconds()) {
         tracing::debug!(stage, seconds, "done");
     }
-    let Made { rendering: Rendering { image, stats, .. }, keep } = make(&world, &plan, &extras, fingerprint)?;
+    let Made { rendering: Rendering { image, stats, .. }, keep } =
+        make(&world, &plan, &extras, fingerprint, deadline)?;
     seconds.extend(&stats.seconds);
     let looking = Instant::now();
     let layers = layers_of(&world, &plan)?;
