@@ -1,6 +1,6 @@
 //! Rays against shapes, without a picture: what a program needs that casts rays of its own.
 
-use crate::bake::written_shape;
+use crate::bake::world_bounds;
 use crate::options::PrepareOptions;
 use crate::query::Crossing;
 use crate::query::Nearest;
@@ -67,8 +67,7 @@ impl Boxes for ShapeBoxes<'_> {
     }
 
     fn bounds(&self, item: u32) -> Aabb {
-        let (_, run, shape) = written_shape(self.runs, self.files, item);
-        shape.world_bounds(&self.frames[run.frame as usize].world_from_object)
+        world_bounds(self.runs, self.frames, self.files, item)
     }
 }
 
@@ -159,6 +158,11 @@ impl Caster {
     /// The box around all shapes; empty without any.
     pub fn bounds(&self) -> Aabb {
         self.accelerator.bounds()
+    }
+
+    /// The accelerator's boxes (or cells), level by level: the first `most` of them.
+    pub fn accelerator_cells(&self, most: usize) -> Vec<dotray_accel::Cell> {
+        self.accelerator.cells(most)
     }
 
     /// The accelerator's figures; this looks at every node.

@@ -13,6 +13,8 @@ use crate::inspect::RayNode;
 use crate::inspect::Shadow;
 use crate::light::Incident;
 use crate::light::Light;
+use crate::observer::Observer;
+use crate::observer::Silent;
 use crate::options::Options;
 use crate::options::Shadows;
 use crate::query::Crossing;
@@ -22,6 +24,10 @@ use crate::query::ShadowBatch;
 use crate::query::ShadowBuffers;
 use crate::query::Tests;
 use crate::query::UNBLOCKED;
+use crate::record::EyeRecord;
+use crate::record::MetByEye;
+use crate::record::Part;
+use crate::record::Recorder;
 use crate::shade::ShadePoint;
 use crate::stats::Stats;
 use crate::world::World;
@@ -50,6 +56,11 @@ pub struct Tracer<'a> {
     shadows: ShadowStream,
     /// Who wants to know everything of the one ray that is traced.
     inspector: Option<Inspector>,
+    /// Who wants to know something of every eye ray.
+    recorder: Option<Recorder>,
+    /// Who may stop it.
+    observer: &'a dyn Observer,
+    stopped: bool,
 }
 
 /// Rays with the same number of bounces behind them, side by side.
@@ -107,6 +118,13 @@ impl Secondary {
             Self::Refracted => RayKind::Refracted,
         }
     }
+
+    fn part(self) -> Part {
+        match self {
+            Self::Reflected => Part::Reflected,
+            Self::Refracted => Part::Transmitted,
+        }
+    }
 }
 
 impl<'a> Tracer<'a> {
@@ -121,7 +139,31 @@ impl<'a> Tracer<'a> {
             nearest: NearestBuffers::default(),
             shadows: ShadowStream::default(),
             inspector: None,
+            recorder: None,
+            observer: &Silent,
+            stopped: false,
         }
+    }
+
+    /// The same, stopped once the observer cancels: colours that it gives then mean nothing.
+    pub fn watched_by(self, observer: &'a dyn Observer) -> Self {
+        Self { observer, ..self }
+    }
+
+    /// Who may stop it.
+    pub fn observer(&self) -> &'a dyn Observer {
+        self.observer
+    }
+
+    /// Whether it was stopped, so that the last colours mean nothing and may be too few.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// Asks whether to stop.
+    fn stops(&mut self) -> bool {
+        self.stopped = self.stopped || self.observer.cancelled();
+        self.stopped
     }
 
     /// The colours that the eye rays see.
@@ -147,11 +189,16 @@ impl<'a> Tracer<'a> {
     /// Traces the eye rays stream by stream and shows each.
     fn eye_streams(&mut self, eye_rays: &[Ray], mut show: impl FnMut(&Stream<'a>)) {
         self.stats.eye_rays += eye_rays.len() as u64;
-        for rays in eye_rays.chunks(STREAM) {
+        for (number, rays) in eye_rays.chunks(STREAM).enumerate() {
+            if self.stops() {
+                return;
+            }
             let mut stream = self.take_stream();
             stream.rays.extend_from_slice(rays);
             stream.contributions.resize(rays.len(), Vec3::ONE);
+            self.listen(|recorder| recorder.open_eyes(number * STREAM, rays.len()));
             self.trace(&mut stream, 0);
+            self.listen(Recorder::close);
             show(&stream);
             self.streams.push(stream);
         }
@@ -166,6 +213,26 @@ impl<'a> Tracer<'a> {
         let mut inspector = self.inspector.take()?;
         inspector.finish(color);
         inspector.root
+    }
+
+    /// What layers want to know of each eye ray; with `alone`, the tests that each ray costs by itself.
+    pub fn record(&mut self, eye_rays: &[Ray], alone: bool) -> Vec<EyeRecord> {
+        self.recorder = Some(Recorder::new(eye_rays.len(), alone));
+        self.eye_streams(eye_rays, |_| {});
+        self.recorder.take().map_or_else(Vec::new, |recorder| recorder.records)
+    }
+
+    /// Tells the recorder, if there is one.
+    #[inline]
+    fn listen(&mut self, tell: impl FnOnce(&mut Recorder)) {
+        if let Some(recorder) = &mut self.recorder {
+            tell(recorder);
+        }
+    }
+
+    /// Whether rays may share their walks: not where somebody wants to know what each costs.
+    fn together(&self) -> bool {
+        self.recorder.as_ref().is_none_or(|recorder| !recorder.alone)
     }
 
     /// An empty stream, its memory taken from one that has done its work.
@@ -184,7 +251,12 @@ impl<'a> Tracer<'a> {
         let world = self.world;
         let background = if depth == 0 { world.background } else { world.secondary_background };
         stream.colors.resize(stream.rays.len(), background);
-        self.meet(stream, depth == 0);
+        if self.stops() {
+            return;
+        }
+        let together = depth == 0 && self.together();
+        self.meet(stream, together);
+        self.record_meetings(stream);
         for Met { index, point } in &stream.met {
             stream.colors[*index] = point.own_light(world.ambient) + ambient_of_lights(world, point);
             if let Some(inspector) = &mut self.inspector {
@@ -192,6 +264,7 @@ impl<'a> Tracer<'a> {
             }
         }
         self.add_lights(&stream.met, &mut stream.colors);
+        self.listen(|recorder| recorder.direct(&stream.colors));
         if depth < self.options.recursion && !stream.met.is_empty() {
             self.add_secondary(stream, Secondary::Reflected, depth + 1);
             self.add_secondary(stream, Secondary::Refracted, depth + 1);
@@ -224,6 +297,23 @@ impl<'a> Tracer<'a> {
         }
     }
 
+    /// Tells the recorder what each ray cost, and of eye rays what they met.
+    fn record_meetings(&mut self, stream: &Stream<'_>) {
+        let Some(recorder) = &mut self.recorder else { return };
+        recorder.cost(0..stream.rays.len(), &self.nearest.tests);
+        if !recorder.at_eye() {
+            return;
+        }
+        let shapes = &self.world.caster.shapes;
+        for Met { index, point } in &stream.met {
+            let Some(nearest) = self.nearest.found[*index] else { continue };
+            let surface = shapes.surface(nearest.position, &stream.rays[*index], nearest.hit);
+            let material = shapes.material(nearest.position);
+            let met = MetByEye { nearest, surface, material, normal: point.normal };
+            recorder.eye(*index, |record| record.met = Some(met));
+        }
+    }
+
     /// Adds every light's term to every point, light after light.
     fn add_lights(&mut self, met: &[Met<'_>], colors: &mut [Vec3]) {
         for (number, (light, tint)) in (0..).zip(self.world.lights.iter().zip(&self.world.tints)) {
@@ -245,6 +335,9 @@ impl<'a> Tracer<'a> {
 
     /// Adds the term of one point lamp to every point that it reaches.
     fn add_light_sample(&mut self, met: &[Met<'_>], from: LightSample<'_>, sums: &mut [Vec3]) {
+        if self.stops() {
+            return;
+        }
         let shadows = &mut self.shadows;
         shadows.rays.clear();
         shadows.ends.clear();
@@ -266,13 +359,17 @@ impl<'a> Tracer<'a> {
         self.find_filters();
         for (&(index, lit), &filter) in self.shadows.waiting.iter().zip(&self.shadows.filters) {
             sums[index] += lit * filter;
+            if let Some(recorder) = &mut self.recorder {
+                recorder.filter(index, filter);
+            }
         }
     }
 
     /// S_i of each shadow ray.
     fn find_filters(&mut self) {
         let world = self.world;
-        let ShadowStream { rays, ends, filters, buffers, .. } = &mut self.shadows;
+        let together = self.together();
+        let ShadowStream { rays, ends, waiting, filters, buffers } = &mut self.shadows;
         filters.clear();
         filters.resize(rays.len(), Vec3::ONE);
         let all_opaque = match self.options.shadows {
@@ -286,9 +383,12 @@ impl<'a> Tracer<'a> {
         let t_min = [world.ray_eps];
         let queries = Queries { rays, t_min: &t_min, t_max: ends };
         let mut batch = ShadowBatch::new(self.level, &world.caster.shapes, queries, see_through, buffers);
-        world.caster.accelerator.walk_together(self.level, &queries, &mut batch);
+        world.caster.accelerator.walk_rays(self.level, &queries, &mut batch, together);
         batch.finish();
         count(&mut self.stats, &buffers.tests);
+        if let Some(recorder) = &mut self.recorder {
+            recorder.cost(waiting.iter().map(|(index, _)| *index), &buffers.tests);
+        }
         for crossing in &buffers.crossings {
             filters[crossing.ray as usize] *= transmission(world.caster.shapes.material(crossing.position));
         }
@@ -339,9 +439,12 @@ impl<'a> Tracer<'a> {
             Secondary::Refracted => self.stats.refracted_rays += next.rays.len() as u64,
         }
         if !next.rays.is_empty() {
+            self.listen(|recorder| recorder.open(next.senders.iter().map(|(sender, _)| *sender)));
             self.trace(&mut next, depth);
+            self.listen(Recorder::close);
             for (&(sender, weight), &color) in next.senders.iter().zip(&next.colors) {
                 stream.colors[sender] += weight * color;
+                self.listen(|recorder| recorder.adds(sender, kind.part(), weight * color));
                 if let Some(inspector) = &mut self.inspector {
                     inspector.finish(color);
                 }

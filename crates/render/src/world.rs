@@ -8,6 +8,7 @@ use crate::texture::Texture;
 use dotray_accel::MAX_ITEMS;
 use dotray_geometry::Aabb;
 use dotray_geometry::Vec3;
+use dotray_image::Image;
 use dotray_image::ImageError;
 use dotray_image::Limits;
 use dotray_scene::Diagnostic;
@@ -66,6 +67,11 @@ impl Textures {
         let start = Instant::now();
         let textures = load_textures(&resolved.textures, files, &options.image_limits)?;
         Ok(Self { textures, seconds: start.elapsed().as_secs_f64() })
+    }
+
+    /// The pictures by number.
+    pub(crate) fn images(&self) -> impl Iterator<Item = &Image> {
+        self.textures.iter().map(Texture::image)
     }
 }
 

@@ -1,9 +1,10 @@
 //! `dotray render`: from a scene to a picture.
 
+use dotray::render::Fingerprint;
 use dotray::render::Rendering;
 use dotray::render::Textures;
 use dotray::render::World;
-use dotray::render::render;
+use dotray::render::on_threads;
 use dotray::scene::sources::Sources;
 use std::time::Instant;
 
@@ -11,6 +12,7 @@ use crate::cost::Cost;
 use crate::cost::Rays;
 use crate::cost::Tests;
 use crate::cost::memory;
+use crate::events;
 use crate::exit::Failure;
 use crate::exit::put;
 use crate::exit::say;
@@ -22,13 +24,17 @@ use crate::input;
 use crate::input::Understood;
 use crate::input::understand;
 use crate::interrupt;
+use crate::keep::Keep;
 use crate::limits;
+use crate::long_args::ProgressName;
+use crate::making::Made;
+use crate::making::again;
+use crate::making::make;
 use crate::meaning::Place;
 use crate::messages::Messages;
 use crate::output;
 use crate::plan::Plan;
 use crate::plan::plan;
-use crate::progress::Watcher;
 use crate::render_args::RenderArgs;
 use crate::values::MissingTexture;
 use crate::values::TextOrJson;
@@ -40,11 +46,14 @@ use std::io::Write;
 pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     let start = Instant::now();
     let plan = plan(typed)?;
+    if plan.long.progress == ProgressName::Json {
+        events::start("render", &shown(&plan.input), &shown(&plan.output));
+    }
     output::check(&plan.output, &plan.input)?;
     interrupt::watch();
     let messages = Messages::new(color, plan.quiet);
     let Understood { mut resolved, sources, disk, text_bytes, mut seconds } =
-        understand(&plan.input, &typed.reading, messages)?;
+        on_threads(plan.options.threads, || understand(&plan.input, &typed.reading, messages))??;
     interrupt::check()?;
     if typed.missing_texture == MissingTexture::White {
         input::whiten(&mut resolved, &disk, plan.quiet);
@@ -55,6 +64,8 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
         messages.print(&faults, &sources);
         Failure::Reported
     })?;
+    let fingerprint =
+        plan.long.checkpoint.is_some().then(|| Fingerprint::of(&resolved, &textures, &plan.options));
     // Nothing can be said of a place in the text any more, and the tree may want the memory.
     drop(sources);
     let world = World::build(resolved, textures, &plan.prepare).map_err(|faults| {
@@ -63,10 +74,10 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     })?;
     interrupt::check()?;
 
-    let Rendering { image, stats, complete } = trace(&world, &plan)?;
-    if !complete {
-        return Err(Failure::Interrupted);
+    for (stage, seconds) in seconds.iter().chain(world.seconds()) {
+        tracing::debug!(stage, seconds, "done");
     }
+    let Made { rendering: Rendering { image, stats, .. }, keep } = make(&world, &plan, &extras, fingerprint)?;
     seconds.extend(&stats.seconds);
     let looking = Instant::now();
     let layers = layers_of(&world, &plan)?;
@@ -79,9 +90,10 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     seconds.push(("encode", encoding.elapsed().as_secs_f64()));
     interrupt::check()?;
     let writing = Instant::now();
-    output::write(&plan.output, &picture)?;
-    for (path, bytes) in layers {
-        output::write(&Place::File(path), &bytes)?;
+    let written = output::write_all(&plan.output, &picture, &layers);
+    written.map_err(|failure| with_kept(failure, keep.as_ref()))?;
+    if let Some(keep) = keep {
+        keep.remove();
     }
     seconds.push(("write", writing.elapsed().as_secs_f64()));
     seconds.push(("total", start.elapsed().as_secs_f64()));
@@ -107,12 +119,22 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     say_cost(&plan, &cost)
 }
 
-fn trace(world: &World, plan: &Plan) -> Result<Rendering, Failure> {
-    let window = plan.options.window();
-    let watcher = Watcher::new(u64::from(window.width) * u64::from(window.height), plan.quiet);
-    let rendering = render(world, &plan.options, &watcher);
-    watcher.finish();
-    Ok(rendering?)
+/// The failure, and where the finished tiles are.
+fn with_kept(failure: Failure, keep: Option<&Keep>) -> Failure {
+    let Some(keep) = keep else { return failure };
+    let kept = format!("`{}` keeps all tiles; write the picture with:\n  {}", keep.path().display(), again());
+    match failure {
+        Failure::Failed(message) => Failure::Failed(format!("{message}\n{kept}")),
+        Failure::ReaderGone => {
+            say(&kept);
+            Failure::ReaderGone
+        }
+        Failure::Usage(_)
+        | Failure::Reported
+        | Failure::Over
+        | Failure::Interrupted { .. }
+        | Failure::TimeLimit(_) => failure,
+    }
 }
 
 fn shown(place: &Place) -> String {
