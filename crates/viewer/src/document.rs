@@ -327,7 +327,8 @@ impl Document {
                 format!("group · {place} ({})", counted(&node.shapes))
             }
             NodeKind::Instance(file, include) => {
-                let placed = self.files.get(file as usize).and_then(|file| file.includes.get(include as usize));
+                let placed =
+                    self.files.get(file as usize).and_then(|file| file.includes.get(include as usize));
                 let name = placed.map_or("", |placed| placed.value.name.as_str());
                 format!("{name} ({})", counted(&node.shapes))
             }

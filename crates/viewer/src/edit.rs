@@ -24,7 +24,9 @@ pub struct Change {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
     /// The text is not what was read.
-    #[error("the directive at byte {0} is not there any more: the file has changed; wait until it is read again")]
+    #[error(
+        "the directive at byte {0} is not there any more: the file has changed; wait until it is read again"
+    )]
     Moved(u64),
     /// Two changes of one directive.
     #[error("the directive at byte {0} is to be changed twice")]

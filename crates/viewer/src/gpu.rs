@@ -165,10 +165,8 @@ impl Raster {
             color: [u8; 4],
         }
         let Some(loaded) = &self.loaded else { return };
-        let end = |point: Vec3, color| End {
-            point: loaded.frame.point(point).to_array().map(|x| x as f32),
-            color,
-        };
+        let end =
+            |point: Vec3, color| End { point: loaded.frame.point(point).to_array().map(|x| x as f32), color };
         let ends: Vec<End> =
             lines.iter().flat_map(|line| line.ends.map(|point| end(point, line.color))).collect();
         self.lines = (!ends.is_empty())
@@ -307,10 +305,12 @@ impl Raster {
         let mut texels: Vec<u8> = pictures.layers.iter().take(most).flatten().copied().collect();
         texels.resize(count * bytes, 255);
         let size = wgpu::Extent3d { width: edge, height: edge, depth_or_array_layers: count as u32 };
-        self.texture(size, wgpu::TextureFormat::Rgba8Unorm, &texels).create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        })
+        self.texture(size, wgpu::TextureFormat::Rgba8Unorm, &texels).create_view(
+            &wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            },
+        )
     }
 
     fn texture(&self, size: wgpu::Extent3d, format: wgpu::TextureFormat, texels: &[u8]) -> wgpu::Texture {

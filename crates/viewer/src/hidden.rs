@@ -106,12 +106,19 @@ mod tests {
             let (a, b) = (seed >> 8 & 15, seed >> 16 & 15);
             let range = a.min(b).min(count)..a.max(b).min(count);
             let hide = seed >> 28 & 1 == 1;
-            if hide { hidden.hide(range.clone()) } else { hidden.show(range.clone()) }
+            if hide {
+                hidden.hide(range.clone())
+            } else {
+                hidden.show(range.clone())
+            }
             flags[range.start as usize..range.end as usize].fill(hide);
             for number in 0..count {
                 assert_eq!(hidden.contains(number), flags[number as usize], "step {step} of {hidden:?}");
             }
-            assert_eq!(hidden.covers(&range), flags[range.start as usize..range.end as usize].iter().all(|x| *x));
+            assert_eq!(
+                hidden.covers(&range),
+                flags[range.start as usize..range.end as usize].iter().all(|x| *x)
+            );
             let ordered = hidden.ranges().windows(2).all(|pair| pair[0].end < pair[1].start);
             assert!(ordered && hidden.ranges().iter().all(|range| !range.is_empty()), "{hidden:?}");
             // Each shape stands twice in the list, as a shape of two triangles would.

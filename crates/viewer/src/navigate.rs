@@ -39,7 +39,11 @@ impl Navigator {
     #[must_use]
     pub fn moved_to(self, camera: Camera, bounds: &Aabb) -> Self {
         let fresh = Self::new(camera, bounds);
-        if self.camera == self.home { fresh } else { Self { camera: self.camera, pivot: self.pivot, ..fresh } }
+        if self.camera == self.home {
+            fresh
+        } else {
+            Self { camera: self.camera, pivot: self.pivot, ..fresh }
+        }
     }
 
     /// The camera now.

@@ -232,8 +232,7 @@ impl Packed {
         let mut corners = Vec::new();
         for i in 0..AROUND {
             for j in 0..ACROSS {
-                let [a, b, c, d] =
-                    [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+                let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
                 corners.extend([[a, b, c], [a, c, d]]);
             }
         }
@@ -282,11 +281,8 @@ fn solid_corners(solid: &Solid) -> [Vec3; 8] {
 fn folded(normal: Vec3) -> u32 {
     let p = normal / (normal.x.abs() + normal.y.abs() + normal.z.abs()).max(f64::MIN_POSITIVE);
     let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
-    let (x, y) = if p.z < 0.0 {
-        ((1.0 - p.y.abs()) * sign(p.x), (1.0 - p.x.abs()) * sign(p.y))
-    } else {
-        (p.x, p.y)
-    };
+    let (x, y) =
+        if p.z < 0.0 { ((1.0 - p.y.abs()) * sign(p.x), (1.0 - p.x.abs()) * sign(p.y)) } else { (p.x, p.y) };
     let bits = |x: f64| u32::from((x.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
     bits(x) | bits(y) << 16
 }

@@ -70,7 +70,8 @@ impl Panels {
     fn left(&mut self, ui: &mut egui::Ui, state: &mut State) {
         ui.add_space(4.0);
         ui.horizontal(|ui| {
-            for (tab, name) in [(Tab::Tree, "Scene"), (Tab::Materials, "Materials"), (Tab::Lights, "Lights")] {
+            for (tab, name) in [(Tab::Tree, "Scene"), (Tab::Materials, "Materials"), (Tab::Lights, "Lights")]
+            {
                 ui.selectable_value(&mut self.tab, tab, name);
             }
         });

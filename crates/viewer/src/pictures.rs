@@ -25,7 +25,8 @@ impl Pictures {
     /// Reads and decodes the textures; one that cannot be read is white, since the tracer tells what is wrong with it.
     pub fn load(textures: &[ResolvedTexture], files: &dyn Files) -> Self {
         let images: Vec<Option<Image>> = textures.iter().map(|texture| decoded(texture, files)).collect();
-        let largest = images.iter().flatten().map(|image| image.width().max(image.height())).max().unwrap_or(1);
+        let largest =
+            images.iter().flatten().map(|image| image.width().max(image.height())).max().unwrap_or(1);
         let mut edge = u32::try_from(largest).unwrap_or(MOST).next_power_of_two().min(MOST);
         while edge > 16 && u64::from(edge) * u64::from(edge) * 4 * images.len() as u64 > MOST_BYTES {
             edge /= 2;
@@ -38,7 +39,8 @@ impl Pictures {
 fn decoded(texture: &ResolvedTexture, files: &dyn Files) -> Option<Image> {
     let limits = Limits::default();
     let mut candidates = texture.candidates.iter();
-    let (bytes, path) = candidates.find_map(|path| Some((files.read_at_most(path, limits.max_bytes).ok()?, path)))?;
+    let (bytes, path) =
+        candidates.find_map(|path| Some((files.read_at_most(path, limits.max_bytes).ok()?, path)))?;
     dotray_image::decode(&bytes, Format::from_path(path).ok(), &limits).ok()
 }
 

@@ -184,6 +184,7 @@ impl State {
 
     fn ask(&mut self, screen: bool) {
         self.prepared = false;
+        let screen = screen || self.document.is_none();
         let prepare = PrepareOptions { accel: self.accel, ..PrepareOptions::default() };
         if let Some(source) = &self.source {
             self.link.open(source.clone(), prepare, screen);
@@ -234,7 +235,8 @@ impl State {
     fn reply(&mut self, reply: Reply, ctx: &egui::Context) {
         match reply {
             Reply::Picture { serial, size, pixels, done, seconds, image } => {
-                let Some(traced) = self.traced.as_mut().filter(|traced| traced.request.serial == serial) else {
+                let Some(traced) = self.traced.as_mut().filter(|traced| traced.request.serial == serial)
+                else {
                     return;
                 };
                 (traced.done, traced.seconds, traced.image) = (done, seconds, image);
@@ -242,7 +244,8 @@ impl State {
                 match &mut traced.texture {
                     Some(texture) => texture.set(shown, egui::TextureOptions::NEAREST),
                     None => {
-                        traced.texture = Some(ctx.load_texture("traced", shown, egui::TextureOptions::NEAREST));
+                        traced.texture =
+                            Some(ctx.load_texture("traced", shown, egui::TextureOptions::NEAREST));
                     }
                 }
             }
@@ -449,7 +452,8 @@ impl State {
         }
         let rounded = edit::rounded_camera(&camera);
         let text = document.sources.bytes(FileId(0));
-        let text = edit::with_camera(text, document.camera_span(), &rounded).map_err(|error| error.to_string())?;
+        let text =
+            edit::with_camera(text, document.camera_span(), &rounded).map_err(|error| error.to_string())?;
         if let Some(navigator) = &mut self.navigator {
             navigator.settle(rounded);
         }

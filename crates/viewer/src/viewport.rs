@@ -31,7 +31,8 @@ impl Viewport {
     pub fn show(&mut self, ui: &mut Ui, state: &mut State, panels: &mut Panels) {
         let pixels_per_point = ui.ctx().pixels_per_point();
         let rect = whole_pixels(ui.available_rect_before_wrap(), pixels_per_point);
-        let size = [rect.width(), rect.height()].map(|edge| (edge * pixels_per_point).round().max(1.0) as u32);
+        let size =
+            [rect.width(), rect.height()].map(|edge| (edge * pixels_per_point).round().max(1.0) as u32);
         if size != state.size {
             state.size = size;
             state.moved();
@@ -50,7 +51,8 @@ impl Viewport {
         }
         self.paint(ui, state, rect);
         if let Some(region) = state.region {
-            let at = |x: f64, y: f64| rect.min + egui::vec2(rect.width() * x as f32, rect.height() * y as f32);
+            let at =
+                |x: f64, y: f64| rect.min + egui::vec2(rect.width() * x as f32, rect.height() * y as f32);
             frame(ui, Rect::from_two_pos(at(region[0], region[1]), at(region[2], region[3])));
         }
     }
@@ -91,9 +93,9 @@ impl Viewport {
             }
         }
         if let (Some(seen), Some(document), true) = (state.hovered, &state.document, hovering.is_some()) {
-            let material = document.material(seen.material).map_or("default material".to_owned(), |(_, index)| {
-                format!("material {index}")
-            });
+            let material = document
+                .material(seen.material)
+                .map_or("default material".to_owned(), |(_, index)| format!("material {index}"));
             let text = format!("{}\n{material}, {:.4} away", document.shape_name(seen.number), seen.distance);
             response.clone().on_hover_text_at_pointer(text);
         }

@@ -71,30 +71,34 @@ pub fn materials(ui: &mut Ui, state: &mut State) {
     let mut changed = None;
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         let all = document.files().iter().enumerate();
-        let all = all.flat_map(|(file, it)| it.materials.iter().enumerate().map(move |(m, it)| (file, m, it)));
+        let all =
+            all.flat_map(|(file, it)| it.materials.iter().enumerate().map(move |(m, it)| (file, m, it)));
         for (file, index, placed) in all.take(MOST) {
             let title = format!("material {index} · {}", document.place(placed.span));
-            egui::CollapsingHeader::new(title).id_salt((file, index)).default_open(index == 0).show(ui, |ui| {
-                let mut material = placed.value.clone();
-                ui.add_enabled_ui(enabled, |ui| {
-                    egui::Grid::new(("material", file, index)).num_columns(2).show(ui, |ui| {
-                        color(ui, "ambient", &mut material.ambient);
-                        color(ui, "diffuse", &mut material.diffuse);
-                        color(ui, "specular", &mut material.specular);
-                        color(ui, "emissive", &mut material.emissive);
-                        number(ui, "ks", &mut material.k_specular, 0.0..=100.0);
-                        number(ui, "kt", &mut material.k_transmission, 0.0..=100.0);
-                        number(ui, "ir", &mut material.index_of_refraction, 0.0..=10.0);
+            egui::CollapsingHeader::new(title).id_salt((file, index)).default_open(index == 0).show(
+                ui,
+                |ui| {
+                    let mut material = placed.value.clone();
+                    ui.add_enabled_ui(enabled, |ui| {
+                        egui::Grid::new(("material", file, index)).num_columns(2).show(ui, |ui| {
+                            color(ui, "ambient", &mut material.ambient);
+                            color(ui, "diffuse", &mut material.diffuse);
+                            color(ui, "specular", &mut material.specular);
+                            color(ui, "emissive", &mut material.emissive);
+                            number(ui, "ks", &mut material.k_specular, 0.0..=100.0);
+                            number(ui, "kt", &mut material.k_transmission, 0.0..=100.0);
+                            number(ui, "ir", &mut material.index_of_refraction, 0.0..=10.0);
+                        });
                     });
-                });
-                let text = material.text.trim();
-                if !text.is_empty() {
-                    ui.label(egui::RichText::new(text).weak());
-                }
-                if material != placed.value {
-                    changed = Some((file, index, material));
-                }
-            });
+                    let text = material.text.trim();
+                    if !text.is_empty() {
+                        ui.label(egui::RichText::new(text).weak());
+                    }
+                    if material != placed.value {
+                        changed = Some((file, index, material));
+                    }
+                },
+            );
         }
     });
     if let (Some((file, index, material)), Some(document)) = (changed, &mut state.document) {
@@ -122,10 +126,13 @@ pub fn lights(ui: &mut Ui, state: &mut State) {
                 }
             });
             for (index, placed) in file.lights.iter().enumerate().take(MOST) {
-                let title = format!("light {index}: {} · {}", kind(&placed.value), document.place(placed.span));
+                let title =
+                    format!("light {index}: {} · {}", kind(&placed.value), document.place(placed.span));
                 egui::CollapsingHeader::new(title).id_salt(index).default_open(index < 4).show(ui, |ui| {
                     let mut light = placed.value;
-                    egui::Grid::new(("light", index)).num_columns(2).show(ui, |ui| fields(ui, &mut light, speed));
+                    egui::Grid::new(("light", index))
+                        .num_columns(2)
+                        .show(ui, |ui| fields(ui, &mut light, speed));
                     if light != placed.value {
                         light_changed = Some((index, light));
                     }

@@ -60,7 +60,11 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
             copy_camera(ui.ctx(), state);
         }
         let writable = state.document.as_ref().is_some_and(crate::document::Document::can_edit);
-        if ui.add_enabled(writable, egui::Button::new("Write camera")).on_hover_text("Into the file").clicked() {
+        if ui
+            .add_enabled(writable, egui::Button::new("Write camera"))
+            .on_hover_text("Into the file")
+            .clicked()
+        {
             write(state, true);
         }
         ui.separator();

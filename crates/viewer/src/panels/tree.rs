@@ -42,7 +42,8 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
         ui.label(egui::RichText::new("Hidden shapes are traced all the same.").weak());
     }
     ui.separator();
-    let asked = if panels.search.trim().is_empty() { rows(panels, ui, state) } else { found(panels, ui, state) };
+    let asked =
+        if panels.search.trim().is_empty() { rows(panels, ui, state) } else { found(panels, ui, state) };
     match asked {
         Some(Asked::Toggle(node)) => {
             if let Some(document) = &mut state.document {
