@@ -21,6 +21,7 @@ use crate::octree::Octree;
 use crate::query::Queries;
 use crate::simd::Level;
 use crate::simd::dispatch;
+use crate::stats::Cell;
 use crate::stats::Defect;
 use crate::stats::Stats;
 use dotray_geometry::Aabb;
@@ -149,6 +150,17 @@ impl Accelerator {
             Structure::Bsp(bsp) => bsp.stats(),
         };
         Stats { bytes: self.memory(), ..stats }
+    }
+
+    /// Its boxes (or cells), level by level from the one around all items: the first `most` of them.
+    pub fn cells(&self, most: usize) -> Vec<Cell> {
+        match &self.structure {
+            Structure::Brute if self.bounds.is_empty() => Vec::new(),
+            Structure::Brute => vec![Cell { bounds: self.bounds, depth: 0, is_leaf: true }],
+            Structure::Tree(tree) => tree.cells(most),
+            Structure::Octree(octree) => octree.cells(most),
+            Structure::Bsp(bsp) => bsp.cells(most),
+        }
     }
 
     /// Checks the structure against the boxes it was built over and the order that the build gave: each item is in

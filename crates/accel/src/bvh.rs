@@ -6,6 +6,8 @@ pub mod wide;
 
 pub mod partition;
 
+pub mod cluster;
+
 pub mod split;
 
 pub mod build;

@@ -13,6 +13,7 @@ use std::path::PathBuf;
 
 use crate::background;
 use crate::exit::Failure;
+use crate::interrupt;
 use crate::layer_args::Background;
 use crate::layer_args::Overlay;
 use crate::layers;
@@ -45,7 +46,8 @@ impl Extras {
             output::check(&Place::File(path), &plan.input)?;
         }
         let wires = match plan.overlay {
-            None => Vec::new(),
+            // The accelerator is not there yet.
+            None | Some(Overlay::Accel) => Vec::new(),
             Some(Overlay::Bounds) => overlay::group_wires(&Tree::new(resolved, sources)),
         };
         Ok(Self { back, wires })
@@ -57,7 +59,13 @@ impl Extras {
             Some(back) => background::composed(&image, back, &plan.options)?,
             None => image,
         };
-        overlay::draw(&mut image, &self.wires, world.camera(), &plan.options);
+        let accelerator = match plan.overlay {
+            None | Some(Overlay::Bounds) => Vec::new(),
+            Some(Overlay::Accel) => overlay::accelerator_wires(world.caster()),
+        };
+        let wires = self.wires.iter().chain(&accelerator);
+        let wires = wires.filter(|wire| wire.depth < plan.overlay_levels);
+        overlay::draw(&mut image, wires, world.camera(), &plan.options);
         Ok(image)
     }
 }
@@ -98,8 +106,9 @@ pub fn layers_of(world: &World, plan: &Plan) -> Result<Vec<LayerPicture>, Failur
         return Ok(Vec::new());
     }
     let window = plan.options.window();
-    let watcher = Watcher::new(u64::from(window.width) * u64::from(window.height), plan.quiet);
+    let watcher =
+        Watcher::new(u64::from(window.width) * u64::from(window.height), plan.long.progress, plan.quiet);
     let layers = render_layers(world, &plan.options, &plan.layers, &watcher);
     watcher.finish();
-    layers?.ok_or(Failure::Interrupted)
+    layers?.ok_or_else(interrupt::failure)
 }

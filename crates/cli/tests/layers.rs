@@ -76,6 +76,21 @@ fn other_formats_get_a_picture_a_layer() {
     folder.run("render balls.ray - 20 15 --layers depth").expect(2).says("--format exr");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_picture_and_its_layers_are_stored_together_or_not_at_all() {
+    let folder = Folder::new();
+    folder.run("render balls.ray a.png 20 15 --layers depth,normal").expect(0);
+    let before = ["a.png", "a.depth.png", "a.normal.png"].map(|name| folder.get(name));
+    // The last layer goes to a device that is always full: nothing of the set changes.
+    std::fs::remove_file(folder.path("a.normal.png")).expect("it was there");
+    std::os::unix::fs::symlink("/dev/full", folder.path("a.normal.png")).expect("a link in its place");
+    let names = folder.names();
+    folder.run("render balls.ray a.png 24 18 --layers depth,normal").expect(1).says("a.normal.png");
+    assert_eq!([folder.get("a.png"), folder.get("a.depth.png")], before[..2]);
+    assert_eq!(folder.names(), names);
+}
+
 #[test]
 fn transparent_pictures_have_coverage_for_alpha() {
     let folder = Folder::new();
@@ -152,6 +167,24 @@ fn boxes_are_drawn_over_the_picture() {
     let changed =
         (0..120 * 90).filter(|i| plain.pixel(i % 120, i / 120) != boxes.pixel(i % 120, i / 120)).count();
     assert!(changed > 100 && changed < 3000, "{changed}");
+    // The outermost level is the scene's own box; the accelerators' boxes lie within it, and are fewer a level.
+    let count_of = |more: &str| {
+        let scene = root().join("scenes/caffeine.ray");
+        for (name, overlay) in [("plain", ""), ("accel", "--overlay accel")] {
+            let more = if overlay.is_empty() { "" } else { more };
+            folder.run(&format!("render {} {name}.ppm 120 90 {overlay} {more}", scene.display())).expect(0);
+        }
+        let [plain, boxes] = ["plain.ppm", "accel.ppm"].map(|name| picture(&folder, name));
+        (0..120 * 90).filter(|i| plain.pixel(i % 120, i / 120) != boxes.pixel(i % 120, i / 120)).count()
+    };
+    let outermost = count_of("--overlay-levels 1");
+    for kind in ["bvh", "boxes", "octree", "bsp"] {
+        let all = count_of(&format!("--accel {kind}"));
+        assert!(all > outermost + 20 && all < 8000, "{kind}: {outermost} {all}");
+    }
+    assert_eq!(count_of("--accel brute"), outermost);
+    assert_eq!(count_of("--overlay-levels 0"), 0);
+    folder.run("render balls.ray a.ppm 40 30 --overlay-levels 1").expect(2).says("--overlay");
     // The left ball's box: its front face, of z = 1, spans x -1.7 to .3, seen from z = 4 with a half angle of .5.
     folder.run("render balls.ray a.ppm 40 30 --overlay bounds").expect(0);
     let a = picture(&folder, "a.ppm");

@@ -9,6 +9,7 @@ use crate::form::Form;
 use crate::form::Slot;
 use crate::form::axis_aligned;
 use dotray_accel::narrow::Frame;
+use dotray_geometry::Aabb;
 use dotray_geometry::Affine;
 use dotray_geometry::Cone;
 use dotray_geometry::Cuboid;
@@ -65,6 +66,18 @@ pub fn written_shape<'a>(runs: &'a [Run], files: &[SceneFile], number: u32) -> (
     // Resolving has checked that every entry of a run is a shape.
     let shape = files[run.file.0 as usize].shape(run.kind, entry).expect("a resolved run names shapes only");
     (index, run, shape)
+}
+
+/// The box in the world of shape `number`.
+pub fn world_bounds(runs: &[Run], frames: &[Transform], files: &[SceneFile], number: u32) -> Aabb {
+    let run = &runs[run_of(runs, number)];
+    // Spheres in no group come by the million: no look at a transform for them.
+    if run.kind == ShapeKind::Sphere && run.frame == 0 {
+        let entry = (run.first + (number - run.first_shape)) as usize;
+        return files[run.file.0 as usize].spheres.shapes[entry].bounds();
+    }
+    let (_, run, shape) = written_shape(runs, files, number);
+    shape.world_bounds(&frames[run.frame as usize].world_from_object)
 }
 
 /// The run that holds shape `number`.
@@ -135,16 +148,23 @@ impl Baked {
 
     /// Appends shape `number` at the next position.
     fn push(&mut self, lists: &Lists, number: u32, material: impl Fn(&Run, i32) -> u32) {
-        let (run_index, run, shape) = written_shape(&lists.runs, &lists.files, number);
+        let run_index = run_of(&lists.runs, number);
+        let run = &lists.runs[run_index];
+        let file = &lists.files[run.file.0 as usize];
         let entry = (run.first + (number - run.first_shape)) as usize;
-        let written = lists.files[run.file.0 as usize].shape_materials(run.kind)[entry];
-        self.materials.push(material(run, written));
+        self.materials.push(material(run, file.shape_materials(run.kind)[entry]));
         self.numbers.push(number);
-        let frame = run.frame as usize;
         if lists.runs.len() > 1 {
             self.runs_of.push(run_index as u32);
         }
-        let slot = self.bake(lists, &shape, frame);
+        let slot = if run.kind == ShapeKind::Sphere && run.frame == 0 {
+            let sphere = file.spheres.shapes[entry];
+            self.cull_ball(lists.cull_frame.as_ref(), sphere.center(), sphere.radius());
+            put(&mut self.spheres, Form::Sphere, sphere)
+        } else {
+            let (_, run, shape) = written_shape(&lists.runs, &lists.files, number);
+            self.bake(lists, &shape, run.frame as usize)
+        };
         self.slots.push(slot);
     }
 
@@ -246,11 +266,11 @@ impl Baked {
             Shape::Cone(cone) => match similarity {
                 Some(scale) => {
                     let c = OrientedCone::from_object(cone, world_from_object, scale);
-                    self.cull_bar(culls, &Spine::along(c.base(), c.axis(), c.radius(), c.height()));
+                    self.cull_bar(culls, &Spine::along(c.base(), c.axis(), c.widest(), c.height()));
                     put(&mut self.cones, Form::Cone, c)
                 }
                 None => {
-                    self.cull_framed_bar(culls, shape, world_from_object, cone.center(), cone.radius());
+                    self.cull_framed_bar(culls, shape, world_from_object, cone.center(), cone.widest());
                     put(&mut self.framed_cones, Form::FramedCone, *cone)
                 }
             },
@@ -372,6 +392,9 @@ impl Lists {
             file.indexed_triangles.materials = Vec::new();
             file.tori.materials = Vec::new();
             file.open_sides.materials = Vec::new();
+            // The tree has become runs and transforms.
+            file.items = Vec::new();
+            file.groups = Vec::new();
         }
     }
 }

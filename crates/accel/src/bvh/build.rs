@@ -11,6 +11,9 @@
 //! 10 levels further down, whatever the items: [`MAX_STACK`] follows. **Order.** Ranges are cut by their contents only,
 //! and pieces that grow on several threads are put together in their order: threads leave no trace.
 
+use crate::bvh::cluster::Cluster;
+use crate::bvh::cluster::Clusters;
+use crate::bvh::partition::Member;
 use crate::bvh::partition::Reference;
 use crate::bvh::partition::Span;
 use crate::bvh::partition::part;
@@ -33,6 +36,13 @@ pub const MAX_STACK: usize = 7 * (FREE_DEPTH as usize + 10);
 /// Ranges with at least so many references grow their pieces on several threads.
 const PARALLEL: usize = 1 << 12;
 
+/// Ranges of so many references are parted by way of clusters: shorter ones gain nothing, and longer ones are parted by
+/// all threads and sorted out of the cache.
+const CLUSTERED: std::ops::Range<usize> = 1 << 15..1 << 18;
+
+/// Clusters of so many references in all are parted no further.
+const TOGETHER: usize = 128;
+
 /// The bit of a reference's number that says that it is not an item but another tree, which becomes a link.
 pub const LINK: u32 = 1 << 31;
 
@@ -49,7 +59,9 @@ struct Piece {
     start: usize,
     end: usize,
     span: Span,
-    /// Whether all of it may stand in one leaf (or is one link).
+    /// How many references it holds: as many as members, unless those are clusters.
+    weight: usize,
+    /// Whether all of it may stand in one leaf (or is one link); of clusters, whether they are parted no further.
     fits: bool,
     /// Whether it should not be parted any further.
     closed: bool,
@@ -101,9 +113,12 @@ impl Builder {
         depth: u32,
         nodes: &mut Vec<WideNode>,
     ) -> Child {
+        if let Some(child) = self.grow_sorted(references, first, span, depth, nodes) {
+            return child;
+        }
         let number = nodes.len();
         nodes.push(WideNode::EMPTY);
-        let (pieces, count) = self.pieces(references, span, depth);
+        let (pieces, count) = self.pieces(references, span, depth, |part| self.fits(part));
         let pieces = &pieces[..count];
         let place = |piece: &Piece| first + piece.start as u32;
         let mut children = [Child::ABSENT; WIDTH];
@@ -138,6 +153,61 @@ impl Builder {
         Child::node(number as u32)
     }
 
+    /// The same by way of clusters, where the range is of a length that they suit.
+    fn grow_sorted(
+        &self,
+        references: &mut [Reference],
+        first: u32,
+        span: Span,
+        depth: u32,
+        nodes: &mut Vec<WideNode>,
+    ) -> Option<Child> {
+        if !CLUSTERED.contains(&references.len()) || depth > FREE_DEPTH / 2 || self.quality == Quality::Best {
+            return None;
+        }
+        let Clusters { sorted, mut clusters } = Clusters::of(references, &span)?;
+        let span = Span::of(&clusters);
+        Some(self.grow_clusters(&mut clusters, &sorted, references, first, span, depth, nodes))
+    }
+
+    /// Makes a node of more clusters than stay together, and all below it. The references in `sorted` come to stand
+    /// in `references` in the order of the leaves.
+    #[expect(clippy::too_many_arguments, reason = "the range and what it is copied from are two things each")]
+    fn grow_clusters(
+        &self,
+        clusters: &mut [Cluster],
+        sorted: &[Reference],
+        references: &mut [Reference],
+        first: u32,
+        span: Span,
+        depth: u32,
+        nodes: &mut Vec<WideNode>,
+    ) -> Child {
+        let number = nodes.len();
+        nodes.push(WideNode::EMPTY);
+        let (pieces, count) = self.pieces(clusters, span, depth, stay_together);
+        let (mut rest, mut place) = (references, first);
+        for (lane, piece) in pieces[..count].iter().enumerate() {
+            let members = &mut clusters[piece.start..piece.end];
+            let (here, behind) = rest.split_at_mut(piece.weight);
+            let child = if piece.fits || depth + 1 >= FREE_DEPTH {
+                let mut end = 0;
+                for part in members.iter().map(|cluster| cluster.of(sorted)) {
+                    here[end..end + part.len()].copy_from_slice(part);
+                    end += part.len();
+                }
+                let piece = Piece { span: Span::of(here), ..*piece };
+                self.child(here, place, &piece, depth, nodes)
+            } else {
+                self.grow_clusters(members, sorted, here, place, piece.span, depth + 1, nodes)
+            };
+            nodes[number].set(lane, &piece.span.bounds.narrow(), child);
+            place += piece.weight as u32;
+            rest = behind;
+        }
+        Child::node(number as u32)
+    }
+
     /// What stands below one piece.
     fn child(
         &self,
@@ -153,15 +223,22 @@ impl Builder {
         }
     }
 
-    /// Parts a range into up to eight pieces, in their order.
-    fn pieces(&self, references: &mut [Reference], span: Span, depth: u32) -> ([Piece; WIDTH], usize) {
-        let whole = Piece { start: 0, end: references.len(), span, fits: false, closed: false };
+    /// Parts a range into up to eight pieces, in their order; `fits` says which need not be parted.
+    fn pieces<T: Member>(
+        &self,
+        members: &mut [T],
+        span: Span,
+        depth: u32,
+        fits: impl Fn(&[T]) -> bool,
+    ) -> ([Piece; WIDTH], usize) {
+        let weight = weight(members);
+        let whole = Piece { start: 0, end: members.len(), span, weight, fits: false, closed: false };
         let mut pieces = [whole; WIDTH];
         let mut count = 1;
         while count < WIDTH {
             let Some(chosen) = choose(&pieces[..count], depth) else { break };
             let piece = pieces[chosen];
-            let Some((low, high)) = self.cut(references, &piece, depth) else {
+            let Some((low, high)) = self.cut(members, &piece, depth, &fits) else {
                 pieces[chosen].closed = true;
                 continue;
             };
@@ -175,12 +252,18 @@ impl Builder {
     }
 
     /// Cuts a piece in two, unless it is cheaper as the leaf that it fits.
-    fn cut(&self, references: &mut [Reference], piece: &Piece, depth: u32) -> Option<(Piece, Piece)> {
-        let range = &mut references[piece.start..piece.end];
+    fn cut<T: Member>(
+        &self,
+        members: &mut [T],
+        piece: &Piece,
+        depth: u32,
+        fits: impl Fn(&[T]) -> bool,
+    ) -> Option<(Piece, Piece)> {
+        let range = &mut members[piece.start..piece.end];
         let split = if depth < FREE_DEPTH { best_split(range, &piece.span, self.quality) } else { None };
         let (middle, low, high) = match split {
             Some(split) if piece.fits => {
-                let whole = piece.span.bounds.half_area() * leaf_cost(piece.len());
+                let whole = piece.span.bounds.half_area() * leaf_cost(piece.weight);
                 if split.cost >= whole {
                     return None;
                 }
@@ -195,12 +278,23 @@ impl Builder {
             }
         };
         let made = |start, end, span| {
-            let fits = self.fits(&references[start..end]);
-            Piece { start, end, span, fits, closed: end - start == 1 }
+            let range = &members[start..end];
+            let (weight, fits) = (weight(range), fits(range));
+            Piece { start, end, span, weight, fits, closed: end - start == 1 }
         };
         let middle = piece.start + middle;
         Some((made(piece.start, middle, low), made(middle, piece.end, high)))
     }
+}
+
+/// For how many references the members stand.
+fn weight(members: &[impl Member]) -> usize {
+    members.iter().map(Member::weight).sum()
+}
+
+/// Whether clusters are parted no further: few enough that the surface-area heuristic may look at each reference.
+fn stay_together(clusters: &[Cluster]) -> bool {
+    clusters.len() == 1 || weight(clusters) <= TOGETHER
 }
 
 /// The piece to part next: the one with the largest surface, or far down the longest.

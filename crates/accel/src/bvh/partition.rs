@@ -17,6 +17,27 @@ pub struct Reference {
     high: [f32; 4],
 }
 
+/// What ranges are parted into: references, or clusters of them.
+pub trait Member: Copy + Send + Sync {
+    /// Its box.
+    fn reference(&self) -> &Reference;
+
+    /// For how many references it stands.
+    fn weight(&self) -> usize;
+}
+
+impl Member for Reference {
+    #[inline(always)]
+    fn reference(&self) -> &Reference {
+        self
+    }
+
+    #[inline(always)]
+    fn weight(&self) -> usize {
+        1
+    }
+}
+
 /// The bit that makes any number a normal float.
 const FLIP: u32 = 1 << 30;
 
@@ -30,6 +51,12 @@ impl Reference {
     /// The item's number.
     pub fn number(&self) -> u32 {
         self.low[3].to_bits() ^ FLIP
+    }
+
+    /// What a builder knows of a range of this one alone.
+    #[cfg(test)]
+    pub fn span(&self) -> Span {
+        Span::of(&[*self])
     }
 
     /// Twice the centre of the box.
@@ -114,16 +141,16 @@ impl Span {
     pub const EMPTY: Self = Self { bounds: Extent::EMPTY, centers: Extent::EMPTY };
 
     /// Of these references, by all threads where they are many.
-    pub fn of(references: &[Reference]) -> Self {
-        let one = |references: &[Reference]| {
+    pub fn of<T: Member>(members: &[T]) -> Self {
+        let one = |members: &[T]| {
             let mut span = Self::EMPTY;
-            references.iter().for_each(|reference| span.add(reference));
+            members.iter().for_each(|member| span.add(member.reference()));
             span
         };
-        if references.len() <= PIECE {
-            return one(references);
+        if members.len() <= PIECE {
+            return one(members);
         }
-        references.par_chunks(PIECE).map(one).reduce(|| Self::EMPTY, Self::joined)
+        members.par_chunks(PIECE).map(one).reduce(|| Self::EMPTY, Self::joined)
     }
 
     /// Takes in a reference.
@@ -141,41 +168,41 @@ impl Span {
     }
 }
 
-/// Parts the references in place, those that are `below` first; returns how many they are and both spans.
-pub fn part(references: &mut [Reference], below: impl Fn(&Reference) -> bool + Sync) -> (usize, Span, Span) {
-    if references.len() <= PIECE {
-        return part_piece(references, &below);
+/// Parts the members in place, those that are `below` first; returns how many they are and both spans.
+pub fn part<T: Member>(members: &mut [T], below: impl Fn(&Reference) -> bool + Sync) -> (usize, Span, Span) {
+    if members.len() <= PIECE {
+        return part_piece(members, &below);
     }
-    let pieces: Vec<_> = references.par_chunks_mut(PIECE).map(|piece| part_piece(piece, &below)).collect();
+    let pieces: Vec<_> = members.par_chunks_mut(PIECE).map(|piece| part_piece(piece, &below)).collect();
     let middle = pieces.iter().map(|&(count, ..)| count).sum();
     let spans = pieces
         .iter()
         .fold((Span::EMPTY, Span::EMPTY), |(a, b), &(_, low, high)| (a.joined(low), b.joined(high)));
-    exchange(references, middle, pieces.iter().map(|&(count, ..)| count));
+    exchange(members, middle, pieces.iter().map(|&(count, ..)| count));
     (middle, spans.0, spans.1)
 }
 
 /// Parts one piece.
-fn part_piece(references: &mut [Reference], below: &impl Fn(&Reference) -> bool) -> (usize, Span, Span) {
-    // Every reference changes places with the first that is not below, itself included: no branch to guess wrong.
+fn part_piece<T: Member>(members: &mut [T], below: &impl Fn(&Reference) -> bool) -> (usize, Span, Span) {
+    // Every member changes places with the first that is not below, itself included: no branch to guess wrong.
     let mut middle = 0;
     let mut spans = [Span::EMPTY; 2];
-    for i in 0..references.len() {
-        let reference = references[i];
-        let is_below = below(&reference);
-        spans[usize::from(!is_below)].add(&reference);
-        references[i] = references[middle];
-        references[middle] = reference;
+    for i in 0..members.len() {
+        let member = members[i];
+        let is_below = below(member.reference());
+        spans[usize::from(!is_below)].add(member.reference());
+        members[i] = members[middle];
+        members[middle] = member;
         middle += usize::from(is_below);
     }
     (middle, spans[0], spans[1])
 }
 
 /// Brings the pieces' parts together: what lies on the wrong side of `middle` changes places, run by run.
-fn exchange(references: &mut [Reference], middle: usize, counts: impl Iterator<Item = usize>) {
-    let (front, back) = references.split_at_mut(middle);
+fn exchange<T: Send>(members: &mut [T], middle: usize, counts: impl Iterator<Item = usize>) {
+    let (front, back) = members.split_at_mut(middle);
     let length = front.len() + back.len();
-    // The runs of `high` references before the middle and of `low` ones behind it, in order.
+    // The runs of `high` members before the middle and of `low` ones behind it, in order.
     let (mut strays_front, mut strays_back) = (Vec::new(), Vec::new());
     for (piece, count) in counts.enumerate() {
         let start = piece * PIECE;
@@ -187,7 +214,7 @@ fn exchange(references: &mut [Reference], middle: usize, counts: impl Iterator<I
     let mut front = runs(front, &strays_front);
     let mut back = runs(back, &strays_back);
     let mut pairs = Vec::new();
-    let (mut a, mut b): (&mut [Reference], &mut [Reference]) = (&mut [], &mut []);
+    let (mut a, mut b): (&mut [T], &mut [T]) = (&mut [], &mut []);
     loop {
         if a.is_empty() {
             let Some(next) = front.next() else { break };

@@ -1,6 +1,7 @@
 //! Where to part a range of references: the surface-area heuristic over bins of their centres.
 
 use crate::bvh::partition::Extent;
+use crate::bvh::partition::Member;
 use crate::bvh::partition::PIECE;
 use crate::bvh::partition::Reference;
 use crate::bvh::partition::Span;
@@ -47,16 +48,21 @@ const LEAF_COST: f32 = 1.0;
 /// The cost of one item.
 const ITEM_COST: f32 = 0.3;
 
+/// Ranges that are parted by half the bins.
+const FEW: usize = 32;
+
 /// The best of the splits tried, or none where all centres lie in one bin.
-pub fn best_split(references: &[Reference], span: &Span, quality: Quality) -> Option<Split> {
+pub fn best_split(members: &[impl Member], span: &Span, quality: Quality) -> Option<Split> {
     match quality {
-        Quality::Fast => Bins::<8>::of(references, span).best(),
-        Quality::Balanced => Bins::<16>::of(references, span).best(),
-        Quality::Best => Bins::<32>::of(references, span).best(),
+        Quality::Fast => Bins::<8>::of(members, span).best(),
+        // Few members fall into few bins, and most splits are of few members.
+        Quality::Balanced if members.len() <= FEW => Bins::<8>::of(members, span).best(),
+        Quality::Balanced => Bins::<16>::of(members, span).best(),
+        Quality::Best => Bins::<32>::of(members, span).best(),
     }
 }
 
-/// References counted by where their centres lie, on each axis.
+/// Members counted by where their centres lie, on each axis.
 #[derive(Clone)]
 struct Bins<const N: usize> {
     low: [f32; 4],
@@ -77,28 +83,33 @@ impl<const N: usize> Bins<N> {
         Self { low: span.centers.low, scale, extents: [[Extent::EMPTY; N]; 3], counts: [[0; N]; 3] }
     }
 
-    /// All the references, counted by all threads where they are many.
-    fn of(references: &[Reference], span: &Span) -> Self {
-        let empty = Self::empty(span);
-        if references.len() <= PIECE {
-            return empty.with(references);
+    /// All the members, counted by all threads where they are many.
+    fn of(members: &[impl Member], span: &Span) -> Self {
+        let mut bins = Self::empty(span);
+        if members.len() <= PIECE {
+            bins.add(members);
+            return bins;
         }
-        let pieces = references.par_chunks(PIECE).map(|piece| Self::empty(span).with(piece));
-        pieces.reduce(|| empty.clone(), Self::joined)
+        let pieces = members.par_chunks(PIECE).map(|piece| {
+            let mut bins = Self::empty(span);
+            bins.add(piece);
+            bins
+        });
+        pieces.reduce(|| bins.clone(), Self::joined)
     }
 
     /// These as well.
-    fn with(mut self, references: &[Reference]) -> Self {
-        for reference in references {
+    fn add(&mut self, members: &[impl Member]) {
+        for member in members {
+            let reference = member.reference();
             let center = reference.center();
             let place: [u32; 4] = std::array::from_fn(|i| bin(center[i], self.low[i], self.scale[i]));
             for axis in 0..3 {
                 let bin = place[axis] as usize % N;
                 self.extents[axis][bin].add(reference);
-                self.counts[axis][bin] += 1;
+                self.counts[axis][bin] += member.weight() as u32;
             }
         }
-        self
     }
 
     /// Two sets of references together.
