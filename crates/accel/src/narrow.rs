@@ -268,7 +268,10 @@ mod tests {
         for x in [0.0, 1.0, 0.1, -0.1, 1e-60, -1e-60, 1.0 + 1e-12, -1.0 - 1e-12, 1e60, -1e60] {
             assert!(f64::from(round_down(x)) <= x && x <= f64::from(round_up(x)), "{x}");
         }
-        assert!(round_down(0.5) >= 0.5_f32.next_down().next_down() && round_up(0.5) <= 0.5_f32.next_up().next_up());
+        assert!(
+            round_down(0.5) >= 0.5_f32.next_down().next_down()
+                && round_up(0.5) <= 0.5_f32.next_up().next_up()
+        );
     }
 
     #[test]
