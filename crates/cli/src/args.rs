@@ -11,6 +11,11 @@ use crate::inspect_args::ExplainArgs;
 use crate::inspect_args::TreeArgs;
 use crate::judge_args::CompareArgs;
 use crate::judge_args::GradeArgs;
+use crate::log::LogFormat;
+use crate::many_args::AnimateArgs;
+use crate::many_args::MergeArgs;
+use crate::many_args::PlanArgs;
+use crate::many_args::WorkArgs;
 use crate::reading_args::DialectName;
 use crate::reading_args::LimitArgs;
 use crate::reading_args::ReadingArgs;
@@ -29,7 +34,7 @@ use crate::values::When;
     subcommand_required = true,
     max_term_width = 100,
     after_help = "Exit codes: 0 done; 1 the scene, the picture or a file is at fault; 2 the command line is; \
-                  3 a comparison found too much; 130 interrupted.",
+                  3 a comparison found too much; 4 a time limit came first; 130 or 143 interrupted.",
     after_long_help = PROGRAM_EXAMPLES
 )]
 pub struct Cli {
@@ -41,6 +46,19 @@ pub struct Cli {
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = When::Auto)]
     #[arg(help_heading = "Messages")]
     pub color: When,
+    /// Also say what is being done; twice, of every tile.
+    #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = "Messages")]
+    pub verbose: u8,
+    /// Messages for people, or one JSON object a line for programs.
+    #[arg(
+        long,
+        global = true,
+        value_enum,
+        value_name = "FORMAT",
+        default_value_t,
+        help_heading = "Messages"
+    )]
+    pub log_format: LogFormat,
 }
 
 const PROGRAM_EXAMPLES: &str = "\
@@ -58,7 +76,9 @@ Exit codes:
   1    the scene, the picture or a file is at fault; nothing was written
   2    the command line is at fault; nothing was read
   3    the pictures differ by more than is forgiven, or the graded program lost points
-  130  interrupted (Ctrl-C); nothing was written
+  4    a time limit came before the end; what is there was written
+  130  interrupted (Ctrl-C); nothing was written but what --checkpoint and --partial-every ask for
+  143  the same by SIGTERM
 
 Environment:
   NO_COLOR     if set, no colour in messages
@@ -70,6 +90,14 @@ Environment:
 pub enum Command {
     /// Make a picture of a scene.
     Render(Box<RenderArgs>),
+    /// Make the frames of an animation, and a movie of them.
+    Animate(Box<AnimateArgs>),
+    /// Cut a picture or an animation into pieces for many machines.
+    Plan(Box<PlanArgs>),
+    /// Compute one piece of a plan.
+    Work(WorkArgs),
+    /// Put the pieces of a plan together.
+    Merge(MergeArgs),
     /// Tell every fault and warning of scenes, with place and likely repair.
     Check(CheckArgs),
     /// Put scene files into their canonical layout; numbers and comments stay as written.
@@ -214,8 +242,11 @@ pub fn forgotten_command(typed: &[std::ffi::OsString]) -> Option<String> {
     Some(format!("`{first}` is not a command; did you mean `dotray render {line}`?"))
 }
 
-fn quoted(word: &str) -> String {
-    if word.is_empty() || word.contains(char::is_whitespace) { format!("'{word}'") } else { word.to_owned() }
+/// A word as a shell reads it back.
+pub fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+%@#".contains(c);
+    let safe = !word.is_empty() && !word.starts_with('#') && word.chars().all(plain);
+    if safe { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 #[cfg(test)]

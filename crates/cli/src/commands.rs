@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod animate;
 mod check;
 mod compare;
 mod completions;
@@ -11,8 +12,11 @@ mod grade;
 mod info;
 mod lsp;
 mod man;
+mod merge;
+mod plan;
 mod render;
 mod tree;
+mod work;
 
 use crate::args::Cli;
 use crate::args::Command;
@@ -22,6 +26,10 @@ use crate::exit::Failure;
 pub fn run(cli: &Cli) -> Result<(), Failure> {
     match &cli.command {
         Command::Render(typed) => render::run(typed, cli.color),
+        Command::Animate(typed) => animate::run(typed, cli.color),
+        Command::Plan(typed) => plan::run(typed, cli.color),
+        Command::Work(typed) => work::run(typed, cli.color),
+        Command::Merge(typed) => merge::run(typed),
         Command::Check(typed) => check::run(typed, cli.color),
         Command::Format(typed) => format::run(typed, cli.color),
         Command::Dump(typed) => dump::run(typed, cli.color),

@@ -6,7 +6,8 @@ use std::fmt;
 use std::io;
 use std::io::Write;
 use std::path::Path;
-use std::process::ExitCode;
+
+pub use crate::log::say;
 
 /// Why a command stopped.
 #[derive(Debug)]
@@ -19,8 +20,15 @@ pub enum Failure {
     Reported,
     /// Two pictures differ by more than is forgiven, which is printed already: exit code 3.
     Over,
-    /// Ctrl-C: exit code 130, as shells report it.
-    Interrupted,
+    /// Ctrl-C or SIGTERM: exit code 130 or 143, as shells report it.
+    Interrupted {
+        /// The signal's number.
+        signal: u8,
+        /// What is kept and how to go on; `None` where nothing was written.
+        kept: Option<String>,
+    },
+    /// The time limit came first; this says what is there: exit code 4.
+    TimeLimit(String),
     /// Whoever read our standard output has gone, as `head` does: no fault, exit code 0.
     ReaderGone,
 }
@@ -32,23 +40,28 @@ impl Failure {
     }
 
     /// Says why and gives the exit code.
-    pub fn report(&self) -> ExitCode {
+    pub fn report(&self) -> u8 {
         match self {
             Self::Usage(message) => {
                 say(&format!("error: {message}\n\nFor more information, try '--help'."));
-                ExitCode::from(2)
+                2
             }
             Self::Failed(message) => {
                 say(&format!("error: {message}"));
-                ExitCode::from(1)
+                1
             }
-            Self::Reported => ExitCode::from(1),
-            Self::Over => ExitCode::from(3),
-            Self::Interrupted => {
-                say("interrupted; nothing was written");
-                ExitCode::from(130)
+            Self::Reported => 1,
+            Self::Over => 3,
+            Self::Interrupted { signal, kept } => {
+                let what = if *signal == 15 { "terminated" } else { "interrupted" };
+                say(&format!("{what}; {}", kept.as_deref().unwrap_or("nothing was written")));
+                128 + signal.min(&127)
             }
-            Self::ReaderGone => ExitCode::SUCCESS,
+            Self::TimeLimit(message) => {
+                say(&format!("the time limit came first; {message}"));
+                4
+            }
+            Self::ReaderGone => 0,
         }
     }
 }
@@ -66,11 +79,6 @@ impl From<ImageError> for Failure {
     fn from(error: ImageError) -> Self {
         Self::Failed(error.to_string())
     }
-}
-
-/// Prints a line to standard error; if nobody reads there, nothing can be done about it.
-pub fn say(line: &str) {
-    let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
 /// Writes to standard output, all of it.

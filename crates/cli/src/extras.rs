@@ -13,6 +13,7 @@ use std::path::PathBuf;
 
 use crate::background;
 use crate::exit::Failure;
+use crate::interrupt;
 use crate::layer_args::Background;
 use crate::layer_args::Overlay;
 use crate::layers;
@@ -105,8 +106,9 @@ pub fn layers_of(world: &World, plan: &Plan) -> Result<Vec<LayerPicture>, Failur
         return Ok(Vec::new());
     }
     let window = plan.options.window();
-    let watcher = Watcher::new(u64::from(window.width) * u64::from(window.height), plan.quiet);
+    let watcher =
+        Watcher::new(u64::from(window.width) * u64::from(window.height), plan.long.progress, plan.quiet);
     let layers = render_layers(world, &plan.options, &plan.layers, &watcher);
     watcher.finish();
-    layers?.ok_or(Failure::Interrupted)
+    layers?.ok_or_else(interrupt::failure)
 }

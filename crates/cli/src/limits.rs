@@ -53,7 +53,7 @@ pub fn resolve_limits(typed: &LimitArgs) -> resolve::Limits {
 }
 
 /// The files that may be read.
-pub fn reachable(typed: &LimitArgs) -> Result<Box<dyn Files>, Failure> {
+pub fn reachable(typed: &LimitArgs) -> Result<Box<dyn Files + Send>, Failure> {
     match &typed.confine {
         None => Ok(Box::new(Disk)),
         Some(folder) => match Confined::new(Disk, folder) {

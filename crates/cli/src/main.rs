@@ -8,7 +8,11 @@ mod reading_args;
 
 mod layer_args;
 
+mod long_args;
+
 mod render_args;
+
+mod many_args;
 
 mod check_args;
 
@@ -16,7 +20,11 @@ mod judge_args;
 
 mod inspect_args;
 
+mod log;
+
 mod args;
+
+mod events;
 
 mod exit;
 
@@ -64,6 +72,24 @@ mod layers;
 
 mod extras;
 
+mod keep;
+
+mod making;
+
+mod curve;
+
+mod keyframes;
+
+mod groups;
+
+mod numbered;
+
+mod pieces;
+
+mod stage;
+
+mod movie;
+
 mod reference;
 
 mod commands;
@@ -75,10 +101,15 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let typed: Vec<OsString> = std::env::args_os().collect();
     if let Some(message) = args::forgotten_command(&typed) {
-        return exit::Failure::Usage(message).report();
+        return exit::Failure::Usage(message).report().into();
     }
     match args::Cli::try_parse_from(typed) {
-        Ok(cli) => commands::run(&cli).map_or_else(|failure| failure.report(), |()| ExitCode::SUCCESS),
+        Ok(cli) => {
+            log::start(cli.verbose, cli.log_format, cli.color);
+            let exit = commands::run(&cli).map_or_else(|failure| failure.report(), |()| 0);
+            events::end(exit);
+            ExitCode::from(exit)
+        }
         Err(error) => {
             // Help goes to standard output, a fault to standard error; a reader who has gone is no fault of ours.
             let _ = error.print();

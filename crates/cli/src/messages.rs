@@ -8,6 +8,7 @@ use std::io;
 use std::io::IsTerminal;
 use std::io::Write;
 
+use crate::log;
 use crate::values::When;
 
 /// How messages are printed.
@@ -41,7 +42,19 @@ impl Messages {
         let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
         let shown: Vec<Diagnostic> =
             diagnostics.iter().filter(|&diagnostic| !self.quiet || is_error(diagnostic)).cloned().collect();
-        if !shown.is_empty() {
+        if log::is_json() {
+            for diagnostic in &shown {
+                let text = render_text(std::slice::from_ref(diagnostic), sources, false);
+                match diagnostic.severity {
+                    Severity::Error => {
+                        tracing::error!(code = diagnostic.code, text, "{}", diagnostic.message)
+                    }
+                    Severity::Warning => {
+                        tracing::warn!(code = diagnostic.code, text, "{}", diagnostic.message)
+                    }
+                }
+            }
+        } else if !shown.is_empty() {
             let text = render_text(&shown, sources, self.color);
             // If nobody reads standard error, nothing can be done about it.
             let _ = io::stderr().lock().write_all(text.as_bytes());

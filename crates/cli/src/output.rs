@@ -66,13 +66,13 @@ fn check_file(path: &Path) -> io::Result<()> {
     fs::remove_file(&probe)
 }
 
-/// Writes the picture's file and further ones: all of them, or none.
+/// Writes the picture's file and further ones: all of them, or none. Where that fails, the picture is stored elsewhere.
 pub fn write_all(output: &Place, bytes: &[u8], more: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
     let Place::File(path) = output else { return write(output, bytes) };
     let more = more.iter().map(|(path, bytes)| (path.as_path(), bytes.as_slice()));
     let files: Vec<_> = std::iter::once((path.as_path(), bytes)).chain(more).collect();
     // The message names the file.
-    write_files(&files).map_err(|error| Failure::Failed(error.to_string()))
+    write_files(&files).map_err(|error| rescued(error.to_string(), path, bytes))
 }
 
 /// Writes the picture's file.
@@ -81,5 +81,15 @@ pub fn write(output: &Place, bytes: &[u8]) -> Result<(), Failure> {
         Place::Standard => put(bytes),
         // The message names the file.
         Place::File(path) => write_file(path, bytes).map_err(|error| Failure::Failed(error.to_string())),
+    }
+}
+
+/// The failure to write a picture, which goes to the folder for temporary files, so that the work is not lost.
+fn rescued(message: String, path: &Path, bytes: &[u8]) -> Failure {
+    let name = path.file_name().unwrap_or("picture".as_ref()).to_string_lossy().into_owned();
+    let rescue = std::env::temp_dir().join(format!("dotray-{}-{name}", std::process::id()));
+    match write_file(&rescue, bytes) {
+        Ok(()) => Failure::Failed(format!("{message}\nthe picture is in `{}`", rescue.display())),
+        Err(_) => Failure::Failed(message),
     }
 }

@@ -7,6 +7,7 @@ use dotray::render::Antialias;
 use dotray::render::Crop;
 use dotray::render::Layer;
 use dotray::render::Options;
+use dotray::render::Order;
 use dotray::render::PrepareOptions;
 use std::fmt::Display;
 use std::path::PathBuf;
@@ -14,6 +15,8 @@ use std::path::PathBuf;
 use crate::exit::Failure;
 use crate::layer_args::Background;
 use crate::layer_args::Overlay;
+use crate::long_args::LongArgs;
+use crate::long_args::OrderName;
 use crate::meaning;
 use crate::meaning::Place;
 use crate::render_args::RenderArgs;
@@ -46,6 +49,8 @@ pub struct Plan {
     pub overlay: Option<Overlay>,
     /// How many levels of boxes.
     pub overlay_levels: usize,
+    /// How the work is kept and shown.
+    pub long: LongArgs,
     /// Print errors only.
     pub quiet: bool,
     /// Whether and how to print what it cost.
@@ -76,6 +81,10 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
     storage::check_alpha(typed, format)?;
     let layers = typed.layers.clone().unwrap_or_default().0;
     storage::check_layers(&layers, format, &output)?;
+    if typed.long.partial_every.is_some() && output == Place::Standard {
+        let message = "--partial-every writes the picture again and again: name a file for it";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     Ok(Plan {
         input,
         output,
@@ -88,6 +97,7 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
         layers,
         overlay: typed.overlay,
         overlay_levels: typed.overlay_levels.unwrap_or(usize::MAX),
+        long: typed.long.clone(),
         quiet: typed.quiet,
         stats: typed.stats,
     })
@@ -143,6 +153,10 @@ fn options(typed: &RenderArgs) -> Result<Options, Failure> {
         max_pixels: typed.max_pixels.unwrap_or(defaults.max_pixels),
         threads: typed.threads.map(usize::from),
         tile_size: typed.tile_size.unwrap_or(defaults.tile_size),
+        order: match typed.long.order {
+            OrderName::Morton => Order::Morton,
+            OrderName::CoarseToFine => Order::CoarseToFine,
+        },
     })
 }
 

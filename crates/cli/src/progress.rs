@@ -1,31 +1,50 @@
 //! A bar on a terminal: share, rate, time left. Nothing at all anywhere else.
 
 use dotray::render::Observer;
-use dotray::render::tiles::Progress;
+use dotray::render::Progress;
 use indicatif::ProgressBar;
 use indicatif::ProgressDrawTarget;
 use indicatif::ProgressState;
 use indicatif::ProgressStyle;
+use serde_json::json;
 use std::fmt;
 use std::io::IsTerminal;
+use std::sync::Mutex;
+use std::sync::PoisonError;
 use std::time::Duration;
+use std::time::Instant;
 
+use crate::events;
 use crate::interrupt;
+use crate::log;
+use crate::long_args::ProgressName;
 
-/// Watches a picture being made: draws the bar, if there is one, and passes Ctrl-C on.
+/// Watches a picture being made: draws the bar, if there is one, or writes lines for programs, and passes Ctrl-C on.
 pub struct Watcher {
     bar: Option<ProgressBar>,
+    lines: Option<Lines>,
+}
+
+/// Lines of progress for programs.
+struct Lines {
+    start: Instant,
+    /// Pixels that were there at the start, and when the last line was written.
+    told: Mutex<(Option<u64>, Option<Instant>)>,
 }
 
 /// The eye follows no faster, and each drawing costs a system call.
 const DRAWINGS_A_SECOND: u8 = 5;
+const BETWEEN_LINES: Duration = Duration::from_millis(100);
 
 impl Watcher {
-    /// A bar over `pixels` on standard error if that is a terminal and `quiet` is not asked for.
-    pub fn new(pixels: u64, quiet: bool) -> Self {
-        let drawn =
-            !quiet && std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|t| t != "dumb");
-        Self { bar: drawn.then(|| bar(pixels)) }
+    /// A bar over `pixels` on standard error if that is a terminal and `quiet` is not asked for; lines for programs
+    /// where those are wanted.
+    pub fn new(pixels: u64, how: ProgressName, quiet: bool) -> Self {
+        let terminal =
+            || std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|t| t != "dumb");
+        let drawn = !quiet && how == ProgressName::Auto && !log::is_json() && terminal();
+        let lines = || Lines { start: Instant::now(), told: Mutex::default() };
+        Self { bar: drawn.then(|| bar(pixels)), lines: (how == ProgressName::Json).then(lines) }
     }
 
     /// Takes the bar away.
@@ -33,6 +52,33 @@ impl Watcher {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+impl Lines {
+    fn tell(&self, progress: &Progress) {
+        let Progress { finished_pixels, total_pixels } = *progress;
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = *told.0.get_or_insert(finished_pixels);
+        let now = Instant::now();
+        let soon = told.1.is_some_and(|last| now.duration_since(last) < BETWEEN_LINES);
+        if soon && finished_pixels < total_pixels {
+            return;
+        }
+        told.1 = Some(now);
+        let seconds = now.duration_since(self.start).as_secs_f64();
+        let rate = if seconds > 0.0 {
+            (finished_pixels - before.min(finished_pixels)) as f64 / seconds
+        } else {
+            0.0
+        };
+        let left = total_pixels.saturating_sub(finished_pixels) as f64;
+        let seconds_left = (rate > 0.0).then(|| left / rate);
+        events::emit(
+            "progress",
+            json!({ "finished_pixels": finished_pixels, "total_pixels": total_pixels, "pixels_per_second": rate,
+                    "seconds_left": seconds_left }),
+        );
     }
 }
 
@@ -86,6 +132,9 @@ impl Observer for Watcher {
             if progress.finished_pixels > bar.position() {
                 bar.set_position(progress.finished_pixels);
             }
+        }
+        if let Some(lines) = &self.lines {
+            lines.tell(progress);
         }
     }
 

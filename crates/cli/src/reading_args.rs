@@ -70,6 +70,11 @@ pub enum DialectName {
 }
 
 impl DialectName {
+    /// The word that was typed.
+    pub fn word(self) -> &'static str {
+        self.chosen().map_or("auto", Dialect::name)
+    }
+
     /// The dialect; `None` where it is to be found out.
     pub fn chosen(self) -> Option<Dialect> {
         match self {

@@ -47,9 +47,10 @@ fn page(command: &Command, text: &mut String) {
     }
 }
 
-/// Every page would say the same of `--help`, `--version` and `--color`: the program's own page is enough.
+/// Every page would say the same of `--help`, `--version`, `--color` and the log: the program's own page is enough.
 fn is_listed(argument: &Arg, command: &Command) -> bool {
-    let everywhere = ["help", "version", "color"].contains(&argument.get_id().as_str());
+    let everywhere =
+        ["help", "version", "color", "verbose", "log_format"].contains(&argument.get_id().as_str());
     !argument.is_hide_set() && (!everywhere || command.get_name() == "dotray")
 }
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use crate::layer_args::Background;
 use crate::layer_args::Layers;
 use crate::layer_args::Overlay;
+use crate::long_args::LongArgs;
 use crate::reading_args::ReadingArgs;
 use crate::values::Aa;
 use crate::values::Accel;
@@ -20,7 +21,7 @@ use crate::values::Size;
 use crate::values::TextOrJson;
 
 /// `dotray render`.
-#[derive(Debug, Args, Default)]
+#[derive(Clone, Debug, Args, Default)]
 #[command(
     override_usage = "dotray render [OPTIONS] IN [OUT] [WIDTH HEIGHT [RECURSION [CUTOFF]]]",
     allow_negative_numbers = true,
@@ -129,6 +130,10 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub reading: ReadingArgs,
 
+    /// How long work is kept and shown.
+    #[command(flatten)]
+    pub long: LongArgs,
+
     /// How the nearest shape is found. The picture does not depend on it.
     #[arg(long, value_enum, value_name = "KIND", default_value_t, help_heading = SPEED)]
     pub accel: Accel,
@@ -175,7 +180,9 @@ Examples:
   dotray render slides.ray cut.png --background transparent
   dotray render slides.ray --crop 100,50,64,64        a part, for a closer look
   dotray render slides.ray --stats --threads 1        what it cost
+  dotray render slides.ray --checkpoint a.tiles --resume
+                                                      may be killed at any moment and started again
   cat slides.ray | dotray render - - --format png > slides.png
 
-On a terminal a bar shows progress, rate and time left. Ctrl-C stops; then nothing is written.
+On a terminal a bar shows progress, rate and time left. Ctrl-C stops; then nothing is written but a checkpoint.
 A picture is written whole or not at all: an error leaves an older file as it was.";

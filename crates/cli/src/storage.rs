@@ -2,6 +2,7 @@
 
 use dotray::image::EncodeOptions;
 use dotray::image::Format;
+use dotray::render::Antialias;
 use dotray::render::Layer;
 use dotray::render::Options;
 use std::path::Path;
@@ -102,6 +103,15 @@ pub fn check_layers(layers: &[Layer], format: Format, output: &Place) -> Result<
             Err(Failure::Usage("--layers needs PNG or OpenEXR, which are left out of this build".to_owned()))
         }
         Place::File(_) => Ok(()),
+    }
+}
+
+/// About how many rays leave the eye for a pixel; of adaptive oversampling nobody knows it before.
+pub fn samples_a_pixel(options: &Options) -> f64 {
+    match options.antialias {
+        Antialias::None => 1.0,
+        Antialias::Grid(n) => f64::from(n) * f64::from(n),
+        Antialias::Adaptive { .. } => 2.0,
     }
 }
 

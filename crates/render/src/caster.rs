@@ -2,6 +2,7 @@
 
 use crate::bake::world_bounds;
 use crate::options::PrepareOptions;
+use crate::query::Crossing;
 use crate::query::Nearest;
 use crate::query::NearestBatch;
 use crate::query::NearestBuffers;
@@ -13,6 +14,7 @@ use crate::shapes::WorldSurface;
 use dotray_accel::Accelerator;
 use dotray_accel::Boxes;
 use dotray_accel::GroupEvent;
+use dotray_accel::Kind;
 use dotray_accel::Level;
 use dotray_accel::Queries;
 use dotray_accel::Settings;
@@ -25,7 +27,7 @@ use dotray_scene::Resolved;
 use dotray_scene::model::SceneFile;
 use dotray_scene::resolved::Run;
 use dotray_scene::resolved::TreeEvent;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Baked shapes and the accelerator over them.
 ///
@@ -78,14 +80,20 @@ impl Caster {
     /// Where there are more than [`dotray_accel::MAX_ITEMS`] shapes.
     pub fn build(resolved: Resolved, options: &PrepareOptions) -> Self {
         let default_material = resolved.default_material();
-        Self::with_default(resolved, default_material, options)
+        Self::with_default(resolved, default_material, options, None)
     }
 
-    /// The same, where the materials have been taken out of the scene.
-    pub(crate) fn with_default(resolved: Resolved, default_material: u32, options: &PrepareOptions) -> Self {
+    /// The same, where the materials have been taken out of the scene. The accelerator of a former caster over the same
+    /// shapes, which may stand elsewhere now, is fitted to them instead of building a new one.
+    pub(crate) fn with_default(
+        resolved: Resolved,
+        default_material: u32,
+        options: &PrepareOptions,
+        former: Option<Self>,
+    ) -> Self {
         // Threads that cannot be had are no reason to fail: the common ones build the same tree.
         let pool = options.threads.and_then(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().ok());
-        let build = || Self::build_here(resolved, default_material, options);
+        let build = || Self::build_here(resolved, default_material, options, former);
         match pool {
             Some(pool) => pool.install(build),
             None => build(),
@@ -93,7 +101,12 @@ impl Caster {
     }
 
     /// The same on the threads of the pool it is called in.
-    fn build_here(resolved: Resolved, default_material: u32, options: &PrepareOptions) -> Self {
+    fn build_here(
+        resolved: Resolved,
+        default_material: u32,
+        options: &PrepareOptions,
+        former: Option<Self>,
+    ) -> Self {
         let start = Instant::now();
         let boxes = ShapeBoxes {
             runs: &resolved.runs,
@@ -101,19 +114,35 @@ impl Caster {
             files: &resolved.files,
             count: resolved.shape_count,
         };
-        let groups = group_events(&resolved);
-        let settings = Settings { quality: options.quality };
-        let built = Accelerator::build(options.accel, &boxes, &groups, &settings);
-        let mut seconds = vec![("build", start.elapsed().as_secs_f64())];
+        let (stage, (accelerator, numbers)) =
+            match former.and_then(|former| former.refitted(&boxes, options.accel)) {
+                Some(refitted) => ("refit", refitted),
+                None => {
+                    let groups = group_events(&resolved);
+                    let settings = Settings { quality: options.quality };
+                    let built = Accelerator::build(options.accel, &boxes, &groups, &settings);
+                    let numbers = built.order.unwrap_or_else(|| (0..resolved.shape_count).collect());
+                    ("build", (built.accelerator, numbers))
+                }
+            };
+        let mut seconds = vec![(stage, start.elapsed().as_secs_f64())];
 
         let start = Instant::now();
-        let cull_frame = built.accelerator.shows_blocks().then(|| Frame::around(built.accelerator.bounds()));
+        let cull_frame = accelerator.shows_blocks().then(|| Frame::around(accelerator.bounds()));
         let material = |run: &Run, written: i32| run.material(written).unwrap_or(default_material);
-        let Resolved { runs, frames, files, shape_count, .. } = resolved;
-        let numbers = built.order.unwrap_or_else(|| (0..shape_count).collect());
+        let Resolved { runs, frames, files, .. } = resolved;
         let shapes = Shapes::bake(runs, frames, files, &numbers, cull_frame, material);
         seconds.push(("bake", start.elapsed().as_secs_f64()));
-        Self { shapes, accelerator: built.accelerator, seconds, level: level() }
+        Self { shapes, accelerator, seconds, level: level() }
+    }
+
+    /// The accelerator fitted to boxes that have moved, with the shape number at each position; `None` where it is of
+    /// another kind, over another number of shapes, or one that cannot be fitted.
+    fn refitted(self, boxes: &ShapeBoxes<'_>, kind: Kind) -> Option<(Accelerator, Vec<u32>)> {
+        let Self { shapes, mut accelerator, .. } = self;
+        let numbers = shapes.into_numbers();
+        let same = accelerator.kind() == kind && numbers.len() == boxes.len() as usize;
+        (same && accelerator.refit(boxes, Some(&numbers))).then_some((accelerator, numbers))
     }
 
     /// What each ray meets first. `together` says that successive rays start and run alike (eye rays of neighbouring
@@ -131,6 +160,17 @@ impl Caster {
         let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| false, &mut buffers);
         self.accelerator.walk_rays(self.level, queries, &mut batch, together);
         buffers.blockers.iter().map(|&blocker| blocker != UNBLOCKED).collect()
+    }
+
+    /// Every surface that each ray crosses between its bounds, ray by ray and nearest first: a ray enters a sphere and
+    /// leaves it.
+    pub fn crossings(&self, queries: &Queries<'_>, together: bool) -> Vec<Crossing> {
+        let mut buffers = ShadowBuffers::default();
+        // To a shadow ray for which everything is see-through nothing is hidden.
+        let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| true, &mut buffers);
+        self.accelerator.walk_rays(self.level, queries, &mut batch, together);
+        batch.finish();
+        buffers.crossings
     }
 
     /// The surface that `ray` met at `nearest`.

@@ -57,6 +57,7 @@ pub(crate) fn written(files: &[SceneFile]) -> u64 {
             + bytes(&file.tori.shapes)
             + bytes(&file.open_sides.shapes)
             + bytes(&file.vertices)
+            + file.colors.iter().map(|list| bytes(&list.colors)).sum::<u64>()
     };
     files.iter().map(of_file).sum()
 }
@@ -162,10 +163,35 @@ pub fn machine_memory() -> u64 {
         let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
         line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
     });
-    // A container has less than its machine.
-    let container = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"];
-    let container = container.iter().filter_map(|path| read(path)?.trim().parse::<u64>().ok());
-    container.chain(machine).min().unwrap_or(UNKNOWN)
+    let limits = cgroup_limits(&read).into_iter().chain(address_space(&read));
+    limits.chain(machine).min().unwrap_or(UNKNOWN)
+}
+
+/// What the groups that this process is in may take: a container, or a job of a scheduler, has less than its machine.
+fn cgroup_limits(read: &impl Fn(&str) -> Option<String>) -> Vec<u64> {
+    let mut files = vec!["/sys/fs/cgroup/memory/memory.limit_in_bytes".to_owned()];
+    let groups = read("/proc/self/cgroup").unwrap_or_default();
+    let own = groups.lines().find_map(|line| line.strip_prefix("0::")).unwrap_or("/").to_owned();
+    let mut group = own.trim_end_matches('/');
+    loop {
+        files.push(format!("/sys/fs/cgroup{group}/memory.max"));
+        match group.rsplit_once('/') {
+            Some((around, _)) => group = around,
+            None => break,
+        }
+    }
+    files.iter().filter_map(|path| read(path)?.trim().parse().ok()).collect()
+}
+
+/// What `ulimit -v` leaves: addresses that are taken already, such as those of the program itself, count.
+fn address_space(read: &impl Fn(&str) -> Option<String>) -> Option<u64> {
+    let limits = read("/proc/self/limits")?;
+    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: u64 = line.split_whitespace().next()?.parse().ok()?;
+    let status = read("/proc/self/status")?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmSize:"))?;
+    let taken: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(limit.saturating_sub(taken.saturating_mul(1024)))
 }
 
 #[cfg(test)]
@@ -180,6 +206,20 @@ mod tests {
             assert_eq!(Bytes(bytes).to_string(), text);
         }
         assert!(machine_memory() > 1 << 26);
+    }
+
+    #[test]
+    fn the_narrowest_group_counts() {
+        let read = |path: &str| match path {
+            "/proc/self/cgroup" => Some("0::/jobs/one\n".to_owned()),
+            "/sys/fs/cgroup/jobs/memory.max" => Some("123\n".to_owned()),
+            "/sys/fs/cgroup/jobs/one/memory.max" => Some("max\n".to_owned()),
+            "/proc/self/limits" => Some("Max address space   5000    unlimited   bytes\n".to_owned()),
+            "/proc/self/status" => Some("VmSize:\t       1 kB\n".to_owned()),
+            _ => None,
+        };
+        assert_eq!(cgroup_limits(&read), [123]);
+        assert_eq!(address_space(&read), Some(5000 - 1024));
     }
 
     #[test]

@@ -6,6 +6,8 @@
 
 use crate::camera::Camera;
 use crate::error::RenderError;
+use crate::observer::Observer;
+use crate::observer::Progress;
 use crate::options::Crop;
 use crate::options::Options;
 use crate::options::Shadows;
@@ -13,8 +15,6 @@ use crate::record::EyeRecord;
 use crate::record::MetByEye;
 use crate::sampler::Block;
 use crate::threads::on_threads;
-use crate::tiles::Observer;
-use crate::tiles::Progress;
 use crate::trace::Tracer;
 use crate::world::World;
 use dotray_accel::simd::level;

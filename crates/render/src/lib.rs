@@ -7,11 +7,15 @@
 
 pub mod error;
 
-mod threads;
+pub mod threads;
 
 pub mod options;
 
 pub mod stats;
+
+pub mod tile;
+
+pub mod observer;
 
 pub mod estimate;
 
@@ -49,15 +53,34 @@ pub mod trace;
 
 pub mod sampler;
 
+mod numbers;
+
+pub mod fingerprint;
+
+pub mod tile_file;
+
+mod borders;
+
+pub mod film;
+
+pub mod picture;
+
 pub mod tiles;
 
 pub mod layers;
 
 pub use caster::Caster;
 pub use error::RenderError;
+pub use film::Film;
+pub use fingerprint::Fingerprint;
 pub use layers::{Layer, LayerPicture, render_layers};
-pub use options::{Antialias, Crop, Options, PrepareOptions, Shadows, TextureFilter};
-pub use query::Nearest;
+pub use observer::{Observer, Progress, Silent};
+pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};
+pub use picture::Picture;
+pub use query::{Crossing, Nearest};
 pub use stats::{MemoryPart, Stats};
-pub use tiles::{Observer, Rendering, Silent, render};
+pub use threads::on_threads;
+pub use tile::{Tile, TilePixels};
+pub use tile_file::TileFile;
+pub use tiles::{Rendering, develop, develop_part, render, render_missing};
 pub use world::{Textures, World};

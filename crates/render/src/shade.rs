@@ -23,6 +23,10 @@ use dotray_scene::resolved::ResolvedMaterial;
 pub struct ShadePoint<'a> {
     /// The surface's material.
     pub material: &'a ResolvedMaterial,
+    /// M_A, with the shape's own colour where it has one
+    pub ambient: Vec3,
+    /// M_D, likewise
+    pub diffuse: Vec3,
     /// P
     pub point: Vec3,
     /// d̂: the ray's direction.
@@ -45,6 +49,10 @@ impl<'a> ShadePoint<'a> {
     /// The point where `ray` met `nearest`.
     pub(crate) fn new(world: &'a World, ray: &Ray, nearest: &Nearest, filter: TextureFilter) -> Self {
         let material = &world.materials[world.caster.shapes.material(nearest.position) as usize];
+        let (ambient, diffuse) = match world.caster.shapes.color(nearest.position) {
+            None => (material.ambient, material.diffuse),
+            Some(color) => (material.ambient * color, material.diffuse * color),
+        };
         let surface = world.caster.shapes.surface(nearest.position, ray, nearest.hit);
         let procedural = &material.procedural;
         let plain = procedural.bumps.is_empty()
@@ -65,6 +73,8 @@ impl<'a> ShadePoint<'a> {
         let normal = facing(outward);
         Self {
             material,
+            ambient,
+            diffuse,
             point: surface.point,
             direction,
             normal,
@@ -83,7 +93,7 @@ impl<'a> ShadePoint<'a> {
 
     /// M_A·L·T_C
     pub fn ambient(&self, light: Vec3) -> Vec3 {
-        self.material.ambient * light * self.texture
+        self.ambient * light * self.texture
     }
 
     /// L_i·[ M_D·T_C·max(0, n̂·L̂) + M_S·max(0, r̂·L̂)^(128·kSpec) ]·F_SPOT·F_ATTEN where n̂·L̂ > 0, else 0:
@@ -99,7 +109,7 @@ impl<'a> ShadePoint<'a> {
 
     /// M_D·T_C·(n̂·L̂)
     pub fn diffuse(&self, cosine: f64) -> Vec3 {
-        self.material.diffuse * self.texture * cosine
+        self.diffuse * self.texture * cosine
     }
 
     /// M_S·max(0, r̂·L̂)^(128·kSpec), with x^0 = 1.

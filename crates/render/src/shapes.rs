@@ -67,6 +67,11 @@ impl Shapes {
         self.baked.numbers.len()
     }
 
+    /// The shape number at each position, all else let go.
+    pub(crate) fn into_numbers(self) -> Vec<u32> {
+        self.baked.numbers
+    }
+
     /// Whether there is no shape.
     pub fn is_empty(&self) -> bool {
         self.baked.numbers.is_empty()
@@ -87,6 +92,16 @@ impl Shapes {
     #[inline]
     pub fn material(&self, position: u32) -> u32 {
         self.baked.materials[position as usize]
+    }
+
+    /// The colour of the shape itself, beside its material's; `None` in scenes without such colours.
+    #[inline]
+    pub fn color(&self, position: u32) -> Option<Vec3> {
+        let run = self.run(position);
+        let (list, first) = run.colors?;
+        let index = first + (self.number(position) - run.first_shape);
+        let colors = &self.lists.files[run.file.0 as usize].colors[list as usize].colors;
+        Some(Vec3::from_array(colors[index as usize].map(f64::from)))
     }
 
     /// The run that the shape stands in.

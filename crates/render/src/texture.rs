@@ -30,6 +30,11 @@ impl Texture {
         size_of_val(self.image.samples()) as u64
     }
 
+    /// The picture.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
     fn texel(&self, x: usize, y: usize) -> Vec3 {
         self.image.pixel(x, y).map_or(Vec3::ZERO, |[r, g, b, _]| Vec3::new(r.into(), g.into(), b.into()))
     }

@@ -5,23 +5,18 @@
 //! all secondary rays go on together. Sums are taken in the order of the formula, so the result does not depend on
 //! which rays share a stream.
 
+mod lighting;
+
 use crate::inspect::End;
 use crate::inspect::Inspector;
-use crate::inspect::LightTerm;
 use crate::inspect::RayKind;
 use crate::inspect::RayNode;
-use crate::inspect::Shadow;
-use crate::light::Incident;
-use crate::light::Light;
+use crate::observer::Observer;
+use crate::observer::Silent;
 use crate::options::Options;
-use crate::options::Shadows;
-use crate::query::Crossing;
 use crate::query::NearestBatch;
 use crate::query::NearestBuffers;
-use crate::query::ShadowBatch;
-use crate::query::ShadowBuffers;
 use crate::query::Tests;
-use crate::query::UNBLOCKED;
 use crate::record::EyeRecord;
 use crate::record::MetByEye;
 use crate::record::Part;
@@ -35,7 +30,6 @@ use dotray_accel::Queries;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
 use dotray_geometry::Vec4;
-use dotray_scene::model::Tint;
 
 /// The rays of one stream: enough to keep SIMD lanes and caches busy, few enough that a deep recursion, which holds
 /// one stream a level, stays small.
@@ -51,11 +45,14 @@ pub struct Tracer<'a> {
     /// The streams under way, by depth: kept, so that a bounce allocates nothing.
     streams: Vec<Stream<'a>>,
     nearest: NearestBuffers,
-    shadows: ShadowStream,
+    shadows: lighting::ShadowStream,
     /// Who wants to know everything of the one ray that is traced.
     inspector: Option<Inspector>,
     /// Who wants to know something of every eye ray.
     recorder: Option<Recorder>,
+    /// Who may stop it.
+    observer: &'a dyn Observer,
+    stopped: bool,
 }
 
 /// Rays with the same number of bounces behind them, side by side.
@@ -75,28 +72,6 @@ struct Stream<'a> {
 struct Met<'a> {
     index: usize,
     point: ShadePoint<'a>,
-}
-
-/// The shadow rays to one lamp, side by side.
-#[derive(Default)]
-struct ShadowStream {
-    rays: Vec<Ray>,
-    ends: Vec<f64>,
-    /// Whose each is: the place in the stream, and what the lamp gives where nothing lies between.
-    waiting: Vec<(usize, Vec3)>,
-    filters: Vec<Vec3>,
-    buffers: ShadowBuffers,
-}
-
-/// One point of a light that stands for it.
-#[derive(Clone, Copy)]
-struct LightSample<'a> {
-    light: &'a Light,
-    tint: &'a Tint,
-    /// The light's number.
-    number: u32,
-    sample: u32,
-    samples: u32,
 }
 
 /// The two kinds of secondary rays.
@@ -132,10 +107,33 @@ impl<'a> Tracer<'a> {
             stats: Stats::default(),
             streams: Vec::new(),
             nearest: NearestBuffers::default(),
-            shadows: ShadowStream::default(),
+            shadows: lighting::ShadowStream::default(),
             inspector: None,
             recorder: None,
+            observer: &Silent,
+            stopped: false,
         }
+    }
+
+    /// The same, stopped once the observer cancels: colours that it gives then mean nothing.
+    pub fn watched_by(self, observer: &'a dyn Observer) -> Self {
+        Self { observer, ..self }
+    }
+
+    /// Who may stop it.
+    pub fn observer(&self) -> &'a dyn Observer {
+        self.observer
+    }
+
+    /// Whether it was stopped, so that the last colours mean nothing and may be too few.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// Asks whether to stop.
+    fn stops(&mut self) -> bool {
+        self.stopped = self.stopped || self.observer.cancelled();
+        self.stopped
     }
 
     /// The colours that the eye rays see.
@@ -162,6 +160,9 @@ impl<'a> Tracer<'a> {
     fn eye_streams(&mut self, eye_rays: &[Ray], mut show: impl FnMut(&Stream<'a>)) {
         self.stats.eye_rays += eye_rays.len() as u64;
         for (number, rays) in eye_rays.chunks(STREAM).enumerate() {
+            if self.stops() {
+                return;
+            }
             let mut stream = self.take_stream();
             stream.rays.extend_from_slice(rays);
             stream.contributions.resize(rays.len(), Vec3::ONE);
@@ -220,11 +221,15 @@ impl<'a> Tracer<'a> {
         let world = self.world;
         let background = if depth == 0 { world.background } else { world.secondary_background };
         stream.colors.resize(stream.rays.len(), background);
+        if self.stops() {
+            return;
+        }
         let together = depth == 0 && self.together();
         self.meet(stream, together);
         self.record_meetings(stream);
         for Met { index, point } in &stream.met {
-            stream.colors[*index] = point.own_light(world.ambient) + ambient_of_lights(world, point);
+            stream.colors[*index] =
+                point.own_light(world.ambient) + lighting::ambient_of_lights(world, point);
             if let Some(inspector) = &mut self.inspector {
                 inspector.own_light(stream.colors[*index]);
             }
@@ -277,98 +282,6 @@ impl<'a> Tracer<'a> {
             let material = shapes.material(nearest.position);
             let met = MetByEye { nearest, surface, material, normal: point.normal };
             recorder.eye(*index, |record| record.met = Some(met));
-        }
-    }
-
-    /// Adds every light's term to every point, light after light.
-    fn add_lights(&mut self, met: &[Met<'_>], colors: &mut [Vec3]) {
-        for (number, (light, tint)) in (0..).zip(self.world.lights.iter().zip(&self.world.tints)) {
-            let samples = light.samples(self.options.light_samples);
-            let first = LightSample { light, tint, number, sample: 0, samples };
-            if samples == 1 {
-                self.add_light_sample(met, first, colors);
-                continue;
-            }
-            let mut sums = vec![Vec3::ZERO; colors.len()];
-            for sample in 0..samples {
-                self.add_light_sample(met, LightSample { sample, ..first }, &mut sums);
-            }
-            for Met { index, .. } in met {
-                colors[*index] += sums[*index] / f64::from(samples);
-            }
-        }
-    }
-
-    /// Adds the term of one point lamp to every point that it reaches.
-    fn add_light_sample(&mut self, met: &[Met<'_>], from: LightSample<'_>, sums: &mut [Vec3]) {
-        let shadows = &mut self.shadows;
-        shadows.rays.clear();
-        shadows.ends.clear();
-        shadows.waiting.clear();
-        for Met { index, point } in met {
-            let incident = from.light.incident(point.point, from.sample, from.samples);
-            if let Some(inspector) = &mut self.inspector {
-                inspector.light(light_term(point, from, incident.as_ref()));
-            }
-            let Some(incident) = incident else { continue };
-            let lit = point.lit(&incident, from.tint);
-            // Where the lamp adds nothing, nobody asks what lies between.
-            if lit != Vec3::ZERO {
-                shadows.rays.push(Ray::new(point.point, incident.towards));
-                shadows.ends.push(incident.distance - self.world.ray_eps);
-                shadows.waiting.push((*index, lit));
-            }
-        }
-        self.find_filters();
-        for (&(index, lit), &filter) in self.shadows.waiting.iter().zip(&self.shadows.filters) {
-            sums[index] += lit * filter;
-            if let Some(recorder) = &mut self.recorder {
-                recorder.filter(index, filter);
-            }
-        }
-    }
-
-    /// S_i of each shadow ray.
-    fn find_filters(&mut self) {
-        let world = self.world;
-        let together = self.together();
-        let ShadowStream { rays, ends, waiting, filters, buffers } = &mut self.shadows;
-        filters.clear();
-        filters.resize(rays.len(), Vec3::ONE);
-        let all_opaque = match self.options.shadows {
-            Shadows::Off => return,
-            Shadows::Opaque => true,
-            Shadows::Filtered => false,
-        };
-        self.stats.shadow_rays += rays.len() as u64;
-        let transmission = |material: u32| world.materials[material as usize].shadow;
-        let see_through = |material| !all_opaque && transmission(material) != Vec3::ZERO;
-        let t_min = [world.ray_eps];
-        let queries = Queries { rays, t_min: &t_min, t_max: ends };
-        let mut batch = ShadowBatch::new(self.level, &world.caster.shapes, queries, see_through, buffers);
-        world.caster.accelerator.walk_rays(self.level, &queries, &mut batch, together);
-        batch.finish();
-        count(&mut self.stats, &buffers.tests);
-        if let Some(recorder) = &mut self.recorder {
-            recorder.cost(waiting.iter().map(|(index, _)| *index), &buffers.tests);
-        }
-        for crossing in &buffers.crossings {
-            filters[crossing.ray as usize] *= transmission(world.caster.shapes.material(crossing.position));
-        }
-        for (filter, &blocker) in filters.iter_mut().zip(&buffers.blockers) {
-            if blocker != UNBLOCKED {
-                *filter = Vec3::ZERO;
-            }
-        }
-        if let (Some(inspector), [filter]) = (&mut self.inspector, &filters[..]) {
-            let shadow = match buffers.blockers[0] {
-                UNBLOCKED => {
-                    let through = |c: &Crossing| transmission(world.caster.shapes.material(c.position));
-                    Shadow::Crossed(buffers.crossings.iter().map(|c| (*c, through(c))).collect())
-                }
-                position => Shadow::Blocked { position, number: world.caster.shapes.number(position) },
-            };
-            inspector.shadow(shadow, *filter, buffers.tests[0]);
         }
     }
 
@@ -441,31 +354,6 @@ impl<'a> Tracer<'a> {
         };
         ray.map(|ray| (ray, product)).ok_or(End::TotalReflection)
     }
-}
-
-/// The term of one light, its shadow not asked for yet.
-fn light_term(point: &ShadePoint<'_>, from: LightSample<'_>, incident: Option<&Incident>) -> LightTerm {
-    let cosine = incident.map_or(0.0, |incident| point.normal.dot(incident.towards));
-    LightTerm {
-        light: from.number,
-        sample: from.sample,
-        samples: from.samples,
-        incident: incident.copied(),
-        cosine,
-        diffuse: point.diffuse(cosine.max(0.0)),
-        highlight: incident.map_or(Vec3::ZERO, |incident| point.highlight(incident.towards)),
-        lit: incident.map_or(Vec3::ZERO, |incident| point.lit(incident, from.tint)),
-        shadow: Shadow::NotAsked,
-        filter: Vec3::ONE,
-        tests: Tests::default(),
-    }
-}
-
-/// What the lights' own ambient colours add, whatever stands between; only one dialect has such lights.
-fn ambient_of_lights(world: &World, point: &ShadePoint<'_>) -> Vec3 {
-    let lights = world.ambient_lights.iter();
-    let incidents = lights.filter_map(|(light, color)| Some((light.incident(point.point, 0, 1)?, color)));
-    incidents.fold(Vec3::ZERO, |sum, (incident, color)| sum + point.ambient(*color * incident.strength))
 }
 
 fn count(stats: &mut Stats, tests: &[Tests]) {

@@ -192,8 +192,9 @@ fn write_shape(out: &mut impl Write, file: &SceneFile, kind: ShapeKind, index: u
             write!(out, " {} {radius} {height}", Triple(cylinder.center()))
         }),
         ShapeKind::Cone => file.cones.shapes.get(index).map_or(Ok(()), |cone| {
-            let [radius, height] = [cone.radius(), cone.height()].map(Shortest);
-            write!(out, " {} {radius} {height}", Triple(cone.center()))
+            let [radius, height, top] = [cone.radius(), cone.height(), cone.top()].map(Shortest);
+            write!(out, " {} {radius} {height}", Triple(cone.center()))?;
+            if cone.top() > 0.0 { write!(out, " {top}") } else { Ok(()) }
         }),
         ShapeKind::Triangle => file.triangles.shapes.get(index).map_or(Ok(()), |triangle| {
             let [a, b, c] = triangle.vertices().map(Triple);

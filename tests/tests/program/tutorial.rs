@@ -58,6 +58,7 @@ fn copy(from: &Path, to: &Path) {
 fn run_page(name: &str, least: usize) {
     let scratch = tempfile::tempdir().expect("a temporary folder");
     copy(&root().join("docs/tutorial"), &scratch.path().join("docs/tutorial"));
+    copy(&root().join("docs/long"), &scratch.path().join("docs/long"));
     copy(&root().join("grading"), &scratch.path().join("grading"));
     let page = std::fs::read_to_string(root().join("docs").join(name)).expect("the page");
     let steps = steps(&page);
@@ -88,6 +89,11 @@ fn every_command_for_students_runs() {
 #[test]
 fn every_command_for_teachers_runs() {
     run_page("teaching.md", 3);
+}
+
+#[test]
+fn every_command_for_long_work_runs() {
+    run_page("long.md", 10);
 }
 
 #[test]

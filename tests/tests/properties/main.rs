@@ -8,4 +8,5 @@ mod levels;
 mod random;
 mod same_bytes;
 mod scaled;
+mod tiles;
 mod transforms;

@@ -1,9 +1,11 @@
 //! `dotray render`: from a scene to a picture.
 
+use dotray::render::Fingerprint;
 use dotray::render::Rendering;
+use dotray::render::Stats;
 use dotray::render::Textures;
 use dotray::render::World;
-use dotray::render::render;
+use dotray::render::on_threads;
 use dotray::scene::sources::Sources;
 use std::time::Instant;
 
@@ -11,6 +13,7 @@ use crate::cost::Cost;
 use crate::cost::Rays;
 use crate::cost::Tests;
 use crate::cost::memory;
+use crate::events;
 use crate::exit::Failure;
 use crate::exit::put;
 use crate::exit::say;
@@ -22,13 +25,17 @@ use crate::input;
 use crate::input::Understood;
 use crate::input::understand;
 use crate::interrupt;
+use crate::keep::Keep;
 use crate::limits;
+use crate::long_args::ProgressName;
+use crate::making::Made;
+use crate::making::again;
+use crate::making::make;
 use crate::meaning::Place;
 use crate::messages::Messages;
 use crate::output;
 use crate::plan::Plan;
 use crate::plan::plan;
-use crate::progress::Watcher;
 use crate::render_args::RenderArgs;
 use crate::values::MissingTexture;
 use crate::values::TextOrJson;
@@ -36,25 +43,34 @@ use crate::values::When;
 use std::io::IsTerminal;
 use std::io::Write;
 
-/// Makes the picture and says what it cost.
-pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
-    let start = Instant::now();
-    let plan = plan(typed)?;
-    output::check(&plan.output, &plan.input)?;
-    interrupt::watch();
-    let messages = Messages::new(color, plan.quiet);
-    let Understood { mut resolved, sources, disk, text_bytes, mut seconds } =
-        understand(&plan.input, &typed.reading, messages)?;
+/// A scene that is ready for tracing.
+struct Ready {
+    world: World,
+    extras: Extras,
+    /// Of the picture, where its tiles are to be kept.
+    fingerprint: Option<Fingerprint>,
+    /// Bytes of text.
+    text_bytes: u64,
+    /// Seconds by stage.
+    seconds: Vec<(&'static str, f64)>,
+}
+
+/// Reads the scene and makes it ready, within the limits.
+fn ready(typed: &RenderArgs, plan: &Plan, messages: Messages) -> Result<Ready, Failure> {
+    let Understood { mut resolved, sources, disk, text_bytes, seconds } =
+        on_threads(plan.options.threads, || understand(&plan.input, &typed.reading, messages))??;
     interrupt::check()?;
     if typed.missing_texture == MissingTexture::White {
         input::whiten(&mut resolved, &disk, plan.quiet);
     }
-    let extras = Extras::new(&plan, &mut resolved, &sources)?;
+    let extras = Extras::new(plan, &mut resolved, &sources)?;
     limits::check(&resolved, &plan.prepare, Some(&plan.options), &typed.reading.limits)?;
     let textures = Textures::load(&resolved, &disk, &plan.prepare).map_err(|faults| {
         messages.print(&faults, &sources);
         Failure::Reported
     })?;
+    let fingerprint =
+        plan.long.checkpoint.is_some().then(|| Fingerprint::of(&resolved, &textures, &plan.options));
     // Nothing can be said of a place in the text any more, and the tree may want the memory.
     drop(sources);
     let world = World::build(resolved, textures, &plan.prepare).map_err(|faults| {
@@ -62,11 +78,26 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
         Failure::Reported
     })?;
     interrupt::check()?;
+    Ok(Ready { world, extras, fingerprint, text_bytes, seconds })
+}
 
-    let Rendering { image, stats, complete } = trace(&world, &plan)?;
-    if !complete {
-        return Err(Failure::Interrupted);
+/// Makes the picture and says what it cost.
+pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
+    let start = Instant::now();
+    let plan = plan(typed)?;
+    if plan.long.progress == ProgressName::Json {
+        events::start("render", &shown(&plan.input), &shown(&plan.output));
     }
+    output::check(&plan.output, &plan.input)?;
+    interrupt::watch();
+    let messages = Messages::new(color, plan.quiet);
+    let Ready { world, extras, fingerprint, text_bytes, mut seconds } = ready(typed, &plan, messages)?;
+    let deadline = plan.long.time_limit.map(|span| Instant::now() + span.0);
+    for (stage, seconds) in seconds.iter().chain(world.seconds()) {
+        tracing::debug!(stage, seconds, "done");
+    }
+    let Made { rendering: Rendering { image, stats, .. }, keep } =
+        make(&world, &plan, &extras, fingerprint, deadline)?;
     seconds.extend(&stats.seconds);
     let looking = Instant::now();
     let layers = layers_of(&world, &plan)?;
@@ -79,13 +110,29 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     seconds.push(("encode", encoding.elapsed().as_secs_f64()));
     interrupt::check()?;
     let writing = Instant::now();
-    output::write_all(&plan.output, &picture, &layers)?;
+    let written = output::write_all(&plan.output, &picture, &layers);
+    written.map_err(|failure| with_kept(failure, keep.as_ref()))?;
+    if let Some(keep) = keep {
+        keep.remove();
+    }
     seconds.push(("write", writing.elapsed().as_secs_f64()));
     seconds.push(("total", start.elapsed().as_secs_f64()));
 
+    say_done(&plan, start);
+    say_cost(&plan, &cost(&plan, &world, &stats, text_bytes, seconds))
+}
+
+/// What the picture cost.
+fn cost(
+    plan: &Plan,
+    world: &World,
+    stats: &Stats,
+    text_bytes: u64,
+    seconds: Vec<(&'static str, f64)>,
+) -> Cost {
     let tracing = seconds.iter().find(|(stage, _)| *stage == "trace").map_or(0.0, |(_, seconds)| *seconds);
     let window = plan.options.window();
-    let cost = Cost {
+    Cost {
         version: env!("CARGO_PKG_VERSION"),
         scene: shown(&plan.input),
         picture: shown(&plan.output),
@@ -93,23 +140,31 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
         height: window.height,
         accelerator: plan.prepare.accel.name(),
         simd: dotray::accel::simd::level_name(dotray::accel::simd::level()),
-        threads: threads(&plan),
+        threads: threads(plan),
         shapes: world.shape_count(),
-        rays: Rays::new(&stats, tracing),
-        tests: Tests::new(&stats),
+        rays: Rays::new(stats, tracing),
+        tests: Tests::new(stats),
         memory: memory(text_bytes, &stats.memory),
         seconds,
-    };
-    say_done(&plan, start);
-    say_cost(&plan, &cost)
+    }
 }
 
-fn trace(world: &World, plan: &Plan) -> Result<Rendering, Failure> {
-    let window = plan.options.window();
-    let watcher = Watcher::new(u64::from(window.width) * u64::from(window.height), plan.quiet);
-    let rendering = render(world, &plan.options, &watcher);
-    watcher.finish();
-    Ok(rendering?)
+/// The failure, and where the finished tiles are.
+fn with_kept(failure: Failure, keep: Option<&Keep>) -> Failure {
+    let Some(keep) = keep else { return failure };
+    let kept = format!("`{}` keeps all tiles; write the picture with:\n  {}", keep.path().display(), again());
+    match failure {
+        Failure::Failed(message) => Failure::Failed(format!("{message}\n{kept}")),
+        Failure::ReaderGone => {
+            say(&kept);
+            Failure::ReaderGone
+        }
+        Failure::Usage(_)
+        | Failure::Reported
+        | Failure::Over
+        | Failure::Interrupted { .. }
+        | Failure::TimeLimit(_) => failure,
+    }
 }
 
 fn shown(place: &Place) -> String {

@@ -138,7 +138,8 @@ impl Flattener<'_> {
         let material_base = self.bases.get(file.0 as usize).copied().unwrap_or(0);
         let first_shape = self.flat.shape_count;
         self.flat.tree.push(TreeEvent::Run(self.flat.runs.len() as u32));
-        self.flat.runs.push(Run { file, kind, first, count, frame, material_base, first_shape });
+        let colors = self.files.get(file.0 as usize).and_then(|file| file.colors_from(kind, first));
+        self.flat.runs.push(Run { file, kind, first, count, frame, material_base, first_shape, colors });
         self.flat.shape_count = shape_count;
         Ok(())
     }

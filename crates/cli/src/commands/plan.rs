@@ -1,0 +1,163 @@
+//! `dotray plan`: work for many machines, cut into pieces.
+
+use dotray::image::Format;
+use dotray::image::write_file;
+use dotray::render::Picture;
+use dotray::render::Silent;
+use std::time::Instant;
+
+use crate::exit::Failure;
+use crate::exit::put;
+use crate::interrupt;
+use crate::keyframes::Animation;
+use crate::layer_args::Background;
+use crate::many_args::PlanArgs;
+use crate::meaning::Place;
+use crate::messages::Messages;
+use crate::output;
+use crate::pieces::FORMAT;
+use crate::pieces::PiecePlan;
+use crate::pieces::cut;
+use crate::pieces::words_of;
+use crate::plan::Plan;
+use crate::plan::plan;
+use crate::stage::Stage;
+use crate::storage;
+use crate::values::FormatName;
+use crate::values::When;
+
+/// The edge of the squares of which the coarse look traces one ray.
+const STEP: u32 = 16;
+/// Frames that are looked at; those between them cost as much as the nearest one.
+const LOOKS: usize = 9;
+/// More tiles in all would take long to cut.
+const MOST_TILES: u64 = 200_000_000;
+
+/// Looks at the picture coarsely and writes the plan.
+pub fn run(typed: &PlanArgs, color: When) -> Result<(), Failure> {
+    let Some(path) = typed.render.output_option.clone().or(typed.render.output.clone()) else {
+        return Err(Failure::Usage("no plan given: dotray plan SCENE -o PLAN --pieces N".to_owned()));
+    };
+    let render = crate::render_args::RenderArgs {
+        // The plan's name says nothing of the pictures' format.
+        format: Some(if Format::Png.is_built() { FormatName::Png } else { FormatName::Bmp }),
+        ..typed.render.clone()
+    };
+    let plan = plan(&render)?;
+    check(&plan)?;
+    let Place::File(scene) = &plan.input else {
+        return Err(Failure::Usage(
+            "a plan needs a scene with a name: others will have to read it".to_owned(),
+        ));
+    };
+    output::check(&Place::File(path.clone()), &plan.input)?;
+    interrupt::watch();
+    let (animation, text) = match &typed.animation {
+        Some(path) => Animation::read(path).map(|(animation, text)| (animation, Some(text)))?,
+        None => (Animation::default(), None),
+    };
+    let messages = Messages::new(color, plan.quiet);
+    let mut stage = Stage::new(&plan, &render, messages, animation)?;
+    let mut fingerprint = stage.fingerprint()?;
+    if let Some(text) = &text {
+        fingerprint = fingerprint.with_hash_of("animation", text.as_bytes());
+    }
+    let frames: Vec<Option<u32>> = match typed.frames {
+        Some(range) => (range.first..=range.last).map(Some).collect(),
+        None => vec![None],
+    };
+    let looks = looks(&mut stage, &plan, &frames)?;
+    let costs: Vec<&[f64]> = (0..frames.len())
+        .map(|index| {
+            let nearest = looks.costs.iter().min_by_key(|(at, _)| at.abs_diff(index));
+            nearest.map_or(&[][..], |(_, costs)| costs)
+        })
+        .collect();
+    let tiles = costs.first().map_or(0, |costs| costs.len());
+    if tiles as u64 * frames.len() as u64 > MOST_TILES {
+        return Err(Failure::Usage(format!(
+            "{} frames of {tiles} tiles are too many for one plan; take fewer frames or a larger --tile-size",
+            frames.len()
+        )));
+    }
+    let made = PiecePlan {
+        dotray_plan: FORMAT,
+        scene: scene.to_string_lossy().into_owned(),
+        options: words_of(&plan, &render),
+        animation: typed.animation.as_ref().map(|path| path.to_string_lossy().into_owned()),
+        tiles: tiles as u32,
+        fingerprint: fingerprint.entries().to_vec(),
+        pieces: cut(&frames, &costs, typed.pieces),
+    };
+    let text = serde_json::to_string_pretty(&made)
+        .map_err(|error| Failure::Failed(format!("cannot write the plan: {error}")))?;
+    write_file(&path, (text + "\n").as_bytes()).map_err(|error| Failure::Failed(error.to_string()))?;
+    if plan.quiet {
+        return Ok(());
+    }
+    let pieces = made.pieces.len();
+    let seconds = looks.seconds * frames.len() as f64 / pieces.max(1) as f64;
+    put(format!(
+        "{pieces} pieces, 0 to {}; about {seconds:.1} s of one core each\n",
+        pieces.saturating_sub(1)
+    )
+    .as_bytes())
+}
+
+/// Refuses what pieces cannot have.
+fn check(plan: &Plan) -> Result<(), Failure> {
+    let refused = [
+        (!plan.layers.is_empty(), "--layers"),
+        (plan.overlay.is_some(), "--overlay"),
+        (matches!(plan.background, Some(Background::Image(_))), "--background image:FILE"),
+        (plan.long.checkpoint.is_some(), "--checkpoint"),
+        (plan.long.partial_every.is_some(), "--partial-every"),
+        (plan.long.time_limit.is_some(), "--time-limit"),
+    ];
+    match refused.into_iter().find(|(typed, _)| *typed) {
+        Some((_, option)) => {
+            Err(Failure::Usage(format!("{option} goes with `dotray render`, not with pieces")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// What the coarse looks found.
+struct Looks {
+    /// Places in the list of frames, each with the costs of its tiles.
+    costs: Vec<(usize, Vec<f64>)>,
+    /// About the seconds that one picture takes on one core.
+    seconds: f64,
+}
+
+fn looks(stage: &mut Stage<'_>, plan: &Plan, frames: &[Option<u32>]) -> Result<Looks, Failure> {
+    let last = frames.len() - 1;
+    let mut places: Vec<usize> = (0..LOOKS).map(|k| k * last / (LOOKS - 1)).collect();
+    places.dedup();
+    let mut looks = Looks { costs: Vec::new(), seconds: 0.0 };
+    for &place in &places {
+        interrupt::check()?;
+        let frame = frames.get(place).copied().flatten();
+        let set = stage.set(frame.unwrap_or(0))?;
+        let picture = Picture::new(set.world, &plan.options)?;
+        let start = Instant::now();
+        let mut costs = Vec::with_capacity(picture.tiles().len());
+        let (mut looked, mut pixels) = (0, 0);
+        for tile in picture.tiles() {
+            let Some(look) = picture.preview(tile, STEP, &Silent) else {
+                return interrupt::check().map(|()| looks);
+            };
+            let counts = &look.counts;
+            // A ray by itself costs about as much as some tests of boxes, a shape's test as much as a few.
+            let cost =
+                20.0 * counts.rays() as f64 + counts.box_tests as f64 + 4.0 * counts.shape_tests as f64;
+            costs.push(cost * tile.pixels() as f64 / counts.eye_rays.max(1) as f64);
+            looked += counts.eye_rays;
+            pixels += tile.pixels();
+        }
+        let seconds = start.elapsed().as_secs_f64() / looked.max(1) as f64 * pixels as f64;
+        looks.seconds += seconds * storage::samples_a_pixel(&plan.options) / places.len() as f64;
+        looks.costs.push((place, costs));
+    }
+    Ok(looks)
+}

@@ -1,0 +1,189 @@
+//! Checkpoints: finished tiles in a file while a picture is being made.
+
+use dotray::render::Film;
+use dotray::render::Fingerprint;
+use dotray::render::Picture;
+use dotray::render::TileFile;
+use dotray::render::TilePixels;
+use dotray::render::tile_file::fingerprint_of;
+use serde_json::json;
+use std::fs;
+use std::io;
+use std::path::Path;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::MutexGuard;
+use std::sync::PoisonError;
+
+use crate::events;
+use crate::exit::Failure;
+use crate::exit::say;
+
+/// A checkpoint that is being written.
+pub struct Keep {
+    path: PathBuf,
+    fingerprint: Fingerprint,
+    state: Mutex<State>,
+}
+
+struct State {
+    file: TileFile,
+    /// Finished tiles that are not in the file yet.
+    pending: Vec<u8>,
+    /// Whether the last attempt failed, so that it is told once.
+    failed: bool,
+}
+
+impl Keep {
+    /// Begins a checkpoint, or goes on with one: then its tiles come into the film.
+    pub fn begin(
+        path: &Path,
+        resume: bool,
+        fingerprint: Fingerprint,
+        picture: &Picture<'_>,
+        film: &mut Film,
+    ) -> Result<Self, Failure> {
+        let file = match (fs::metadata(path), resume) {
+            (Ok(metadata), _) if metadata.is_dir() => {
+                return Err(Failure::file("keep a checkpoint in", path, &"it is a folder"));
+            }
+            (Ok(_), false) => {
+                return Err(Failure::Failed(format!(
+                    "the checkpoint `{}` is there already: --resume goes on with it; delete it to begin anew",
+                    path.display()
+                )));
+            }
+            (Ok(_), true) => load(path, &fingerprint, picture, film)?,
+            (Err(error), _) if error.kind() == io::ErrorKind::NotFound => {
+                tracing::debug!("beginning the checkpoint {}", path.display());
+                // The message names the file.
+                TileFile::create(path, &fingerprint).map_err(|error| Failure::Failed(error.to_string()))?
+            }
+            (Err(error), _) => return Err(Failure::file("read", path, &error)),
+        };
+        let state = Mutex::new(State { file, pending: Vec::new(), failed: false });
+        Ok(Self { path: path.to_owned(), fingerprint, state })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A tile is finished.
+    pub fn take(&self, pixels: &TilePixels) {
+        self.state().pending.extend(pixels.to_bytes());
+    }
+
+    /// Adds what is finished to the file; where that fails, it is told, and tried again the next time. True where all
+    /// is kept.
+    pub fn save(&self, film: &Mutex<Film>) -> bool {
+        let mut state = self.state();
+        let there = fs::exists(&self.path).unwrap_or(true);
+        if there && state.pending.is_empty() {
+            return true;
+        }
+        let saved = if there {
+            let pending = std::mem::take(&mut state.pending);
+            let saved = state.file.append(&pending);
+            if saved.is_err() {
+                state.pending = pending;
+            }
+            saved
+        } else {
+            self.begin_again(&mut state, film)
+        };
+        match saved {
+            Ok(()) => {
+                state.failed = false;
+                tracing::debug!("finished tiles are in {}", self.path.display());
+                events::emit(
+                    "saved",
+                    json!({ "kind": "checkpoint", "file": self.path.display().to_string() }),
+                );
+            }
+            Err(error) => {
+                if !state.failed {
+                    say(&format!(
+                        "warning: cannot add to the checkpoint `{}`: {error}; the picture goes on, and so do attempts",
+                        self.path.display()
+                    ));
+                }
+                state.failed = true;
+            }
+        }
+        !state.failed
+    }
+
+    /// Somebody has taken the file away: everything that is finished goes into a new one.
+    fn begin_again(&self, state: &mut State, film: &Mutex<Film>) -> io::Result<()> {
+        let mut file = TileFile::create(&self.path, &self.fingerprint)?;
+        let film = film.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all = Vec::new();
+        film.tiles().iter().filter_map(|tile| film.pixels(tile)).for_each(|tile| all.extend(tile.to_bytes()));
+        drop(film);
+        // Said before the file is there, lest nobody hears it who only waits for the file.
+        say(&format!(
+            "warning: the checkpoint `{}` had vanished; all that is finished goes into a new one",
+            self.path.display()
+        ));
+        file.append(&all)?;
+        state.pending.clear();
+        state.file = file;
+        Ok(())
+    }
+
+    /// The picture is written: the file has done its work.
+    pub fn remove(self) {
+        let Self { path, state, .. } = self;
+        // Not every system removes an open file.
+        drop(state);
+        if let Err(error) = fs::remove_file(&path)
+            && error.kind() != io::ErrorKind::NotFound
+        {
+            say(&format!("warning: cannot remove the checkpoint `{}`: {error}", path.display()));
+        }
+    }
+}
+
+fn load(
+    path: &Path,
+    fingerprint: &Fingerprint,
+    picture: &Picture<'_>,
+    film: &mut Film,
+) -> Result<TileFile, Failure> {
+    let fault = |error: io::Error| Failure::file("go on with", path, &error);
+    let name = path.display();
+    let Some(there) = fingerprint_of(path).map_err(fault)? else {
+        return Err(Failure::Failed(format!(
+            "`{name}` is no checkpoint, or nothing in it is whole; delete it to begin anew"
+        )));
+    };
+    let differences = there.differences(fingerprint, "there", "now");
+    if !differences.is_empty() {
+        let list = differences.join("; ");
+        return Err(Failure::Failed(format!(
+            "the checkpoint `{name}` belongs to another picture ({list}); delete it to begin anew"
+        )));
+    }
+    let mut file = TileFile::open(path, fingerprint).map_err(fault)?;
+    let channels = if picture.options().transparent { 4 } else { 3 };
+    let contents = file
+        .read(picture.tiles(), channels, |pixels| {
+            film.store(&pixels);
+        })
+        .map_err(fault)?;
+    if contents.lost_bytes > 0 {
+        let lost = contents.lost_bytes;
+        say(&format!(
+            "warning: {lost} bytes of the checkpoint `{name}` are damaged; only their tiles are made again"
+        ));
+    }
+    let progress = film.progress();
+    tracing::debug!("{} of {} pixels are in {name}", progress.finished_pixels, progress.total_pixels);
+    Ok(file)
+}

@@ -1,0 +1,229 @@
+//! Tracing a picture while its tiles are kept, its state is shown, and somebody may stop it.
+
+use dotray::image::encode;
+use dotray::render::Film;
+use dotray::render::Fingerprint;
+use dotray::render::Observer;
+use dotray::render::Picture;
+use dotray::render::Progress;
+use dotray::render::Rendering;
+use dotray::render::TilePixels;
+use dotray::render::World;
+use dotray::render::develop;
+use serde_json::json;
+use std::sync::Condvar;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+use std::time::Instant;
+
+use crate::args::quoted;
+use crate::events;
+use crate::exit::Failure;
+use crate::exit::say;
+use crate::extras::Extras;
+use crate::interrupt;
+use crate::keep::Keep;
+use crate::meaning::Place;
+use crate::output;
+use crate::plan::Plan;
+use crate::progress::Watcher;
+
+/// How often tiles are kept where nobody says it.
+const EVERY: Duration = Duration::from_secs(10);
+
+/// A picture, and the checkpoint to be removed once it is written.
+pub struct Made {
+    /// The picture.
+    pub rendering: Rendering,
+    /// Its checkpoint.
+    pub keep: Option<Keep>,
+}
+
+/// Watches, keeps, stops.
+struct Overseer<'a> {
+    watcher: Watcher,
+    keep: Option<&'a Keep>,
+    deadline: Option<Instant>,
+    late: AtomicBool,
+    ended: Mutex<bool>,
+    end: Condvar,
+}
+
+impl Observer for Overseer<'_> {
+    fn tile_traced(&self, pixels: &TilePixels) {
+        tracing::trace!(number = pixels.tile.number, rays = pixels.counts.rays(), "a tile is finished");
+        if let Some(keep) = self.keep {
+            keep.take(pixels);
+        }
+    }
+
+    fn tile_finished(&self, progress: &Progress) {
+        self.watcher.tile_finished(progress);
+    }
+
+    fn cancelled(&self) -> bool {
+        if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            self.late.store(true, Ordering::Relaxed);
+        }
+        self.late.load(Ordering::Relaxed) || interrupt::pressed()
+    }
+}
+
+/// What is made, for those who write it while it is not finished.
+struct Work<'a> {
+    picture: &'a Picture<'a>,
+    world: &'a World,
+    plan: &'a Plan,
+    extras: &'a Extras,
+    film: Mutex<Film>,
+}
+
+impl Work<'_> {
+    /// The share of the picture that is finished, for people; never 100 % before the end.
+    fn percent(&self) -> u64 {
+        let progress = self.film.lock().unwrap_or_else(PoisonError::into_inner).progress();
+        100 * progress.finished_pixels / progress.total_pixels.max(1)
+    }
+
+    /// Writes the picture so far.
+    fn write_partial(&self) -> Result<(), Failure> {
+        let image = self.film.lock().unwrap_or_else(PoisonError::into_inner).image().clone();
+        let image = self.extras.apply(image, self.world, self.plan)?;
+        output::write(&self.plan.output, &encode(&image, self.plan.format, &self.plan.encode)?)?;
+        tracing::debug!("wrote the picture so far");
+        if let Place::File(path) = &self.plan.output {
+            events::emit("saved", json!({ "kind": "partial", "file": path.display().to_string() }));
+        }
+        Ok(())
+    }
+
+    /// Keeps tiles and writes the picture so far, each at its times, until all tiles are there.
+    fn save_regularly(&self, overseer: &Overseer<'_>) {
+        let long = &self.plan.long;
+        let every = overseer.keep.map(|_| long.every.map_or(EVERY, |span| span.0));
+        let partial_every = long.partial_every.map(|span| span.0);
+        let after = |period: Option<Duration>| period.map(|period| Instant::now() + period);
+        let (mut next_keep, mut next_partial) = (after(every), after(partial_every));
+        let mut told = false;
+        let mut ended = overseer.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        while !*ended {
+            let Some(next) = next_keep.into_iter().chain(next_partial).min() else { return };
+            let wait = next.saturating_duration_since(Instant::now());
+            ended = overseer.end.wait_timeout(ended, wait).unwrap_or_else(PoisonError::into_inner).0;
+            let due = |next: Option<Instant>| next.is_some_and(|next| Instant::now() >= next);
+            if *ended {
+                return;
+            }
+            drop(ended);
+            if let Some(keep) = overseer.keep.filter(|_| due(next_keep)) {
+                keep.save(&self.film);
+                next_keep = after(every);
+            }
+            if due(next_partial) {
+                // Once is enough: the picture itself will be written, or not, at the end.
+                if let Err(Failure::Failed(message)) = self.write_partial()
+                    && !std::mem::replace(&mut told, true)
+                {
+                    say(&format!("warning: {message}; the picture goes on"));
+                }
+                next_partial = after(partial_every);
+            }
+            ended = overseer.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+/// Traces the picture until the deadline; with a fingerprint, its checkpoint is kept.
+pub fn make(
+    world: &World,
+    plan: &Plan,
+    extras: &Extras,
+    fingerprint: Option<Fingerprint>,
+    deadline: Option<Instant>,
+) -> Result<Made, Failure> {
+    let start = Instant::now();
+    let long = &plan.long;
+    let picture = Picture::new(world, &plan.options)?;
+    let mut film = picture.film()?;
+    let keep = match (&long.checkpoint, fingerprint) {
+        (Some(path), Some(fingerprint)) => {
+            Some(Keep::begin(path, long.resume, fingerprint, &picture, &mut film)?)
+        }
+        (Some(_) | None, _) => None,
+    };
+    let window = plan.options.window();
+    let progress = film.progress();
+    events::emit(
+        "picture",
+        json!({ "width": window.width, "height": window.height, "tiles": picture.tiles().len(),
+                "finished_pixels": progress.finished_pixels, "total_pixels": progress.total_pixels }),
+    );
+    let watcher = Watcher::new(progress.total_pixels, long.progress, plan.quiet);
+    watcher.tile_finished(&progress);
+    let overseer = Overseer {
+        watcher,
+        keep: keep.as_ref(),
+        deadline,
+        late: AtomicBool::new(false),
+        ended: Mutex::new(false),
+        end: Condvar::new(),
+    };
+    let work = Work { picture: &picture, world, plan, extras, film: Mutex::new(film) };
+    let developed = std::thread::scope(|scope| {
+        if overseer.keep.is_some() || long.partial_every.is_some() {
+            scope.spawn(|| work.save_regularly(&overseer));
+        }
+        let developed = develop(work.picture, &work.film, &overseer);
+        *overseer.ended.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        overseer.end.notify_all();
+        developed
+    });
+    overseer.watcher.finish();
+    developed?;
+    let complete = work.film.lock().unwrap_or_else(PoisonError::into_inner).is_complete();
+    let kept = keep.as_ref().map(|keep| keep.save(&work.film));
+    if !complete {
+        let late = overseer.late.load(Ordering::Relaxed) && !interrupt::pressed();
+        return Err(stopped(&work, keep.as_ref().filter(|_| kept == Some(true)), late));
+    }
+    let film = work.film.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(Made { rendering: Rendering::of(&picture, film, start), keep })
+}
+
+/// What is to be said and written of a picture that was stopped.
+fn stopped(work: &Work<'_>, keep: Option<&Keep>, late: bool) -> Failure {
+    let percent = work.percent();
+    let mut kept = Vec::new();
+    let long = &work.plan.long;
+    if late && long.time_limit.is_some() || long.partial_every.is_some() {
+        match (work.write_partial(), &work.plan.output) {
+            (Ok(()), Place::File(path)) => {
+                kept.push(format!("`{}` holds {percent} % of the picture", path.display()));
+            }
+            (Ok(()), Place::Standard) => kept.push(format!("{percent} % of the picture was written")),
+            (Err(Failure::Failed(message)), _) => kept.push(message),
+            (Err(_), _) => {}
+        }
+    }
+    if let Some(keep) = keep {
+        let path = keep.path().display();
+        kept.push(format!("`{path}` keeps {percent} % of the picture; go on with:\n  {}", again()));
+    }
+    let kept = (!kept.is_empty()).then(|| kept.join("; "));
+    if late {
+        return Failure::TimeLimit(kept.unwrap_or_else(|| "nothing was written".to_owned()));
+    }
+    Failure::Interrupted { signal: interrupt::signal().unwrap_or(2), kept }
+}
+
+/// The command line that goes on with the work.
+pub fn again() -> String {
+    let mut words: Vec<String> = std::env::args_os().map(|word| quoted(&word.to_string_lossy())).collect();
+    if !words.iter().any(|word| word == "--resume") {
+        words.push("--resume".to_owned());
+    }
+    words.join(" ")
+}

@@ -1,0 +1,204 @@
+//! Pictures and animations split among processes and joined again.
+
+#![cfg(unix)]
+
+mod common;
+
+use common::Folder;
+use serde_json::Value;
+use std::process::Command;
+use std::process::Stdio;
+
+const OPTIONS: &str = "--size 200x150 --aa adaptive --tile-size 16 --recursion 4";
+
+fn plan(folder: &Folder, name: &str) -> Value {
+    serde_json::from_slice(&folder.get(name)).expect("JSON")
+}
+
+fn count(folder: &Folder, name: &str) -> usize {
+    plan(folder, name)["pieces"].as_array().expect("pieces").len()
+}
+
+#[test]
+fn pieces_of_separate_processes_make_the_same_picture() {
+    for more in ["", "--background transparent", "--crop 20,30,101,77 --background .1,.2,.9 --shadows opaque"]
+    {
+        let folder = Folder::new();
+        folder.run(&format!("render balls.ray whole.png {OPTIONS} {more}")).expect(0);
+        folder.run(&format!("plan balls.ray -o a.plan --pieces 7 {OPTIONS} {more}")).expect(0);
+        assert_eq!(count(&folder, "a.plan"), 7);
+        // Backwards, two at a time, one of them twice at the same time.
+        for numbers in [[6, 6], [5, 4], [3, 2], [1, 0]] {
+            let children = numbers.map(|n| {
+                let mut command = folder.command(&format!("work a.plan --piece {n} -o pieces --threads 1"));
+                command.stdout(Stdio::null()).spawn().expect("it starts")
+            });
+            for mut child in children {
+                assert!(child.wait().expect("it ends").success());
+            }
+        }
+        folder.run("merge a.plan pieces -o merged.png").expect(0).says("of 7 pieces");
+        assert!(folder.get("merged.png") == folder.get("whole.png"), "{more}");
+        let before = folder.get("pieces/piece-00003.tiles");
+        folder.run("work a.plan --piece 3 -o pieces").expect(0).says("piece 3 is there already");
+        assert!(folder.get("pieces/piece-00003.tiles") == before);
+    }
+}
+
+#[test]
+fn what_is_missing_or_wrong_is_told_by_number() {
+    let folder = Folder::new();
+    folder.run(&format!("plan balls.ray -o a.plan --pieces 8 {OPTIONS}")).expect(0);
+    let work = |n: usize| folder.run(&format!("work a.plan --piece {n} -o pieces")).expect(0);
+    (0..8).for_each(|n| drop(work(n)));
+    folder.run("merge a.plan pieces -o merged.png").expect(0);
+    let whole = folder.get("merged.png");
+    std::fs::remove_file(folder.path("merged.png")).expect("a picture");
+    let path = |n: usize| folder.path(&format!("pieces/piece-0000{n}.tiles"));
+    for n in [1, 5, 6] {
+        std::fs::remove_file(path(n)).expect("a piece");
+    }
+    let mut bytes = std::fs::read(path(2)).expect("a piece");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(path(2), &bytes).expect("a piece");
+    std::fs::copy(path(3), path(4)).expect("a piece");
+    let told = folder.run("merge a.plan pieces -o merged.png").expect(1);
+    let told = told
+        .says("5 of 8 pieces are missing or not whole: 1-2, 4-6")
+        .says("dotray work a.plan --piece N -o pieces");
+    assert!(told.stderr.contains("piece-00002.tiles` is damaged"), "{}", told.stderr);
+    assert!(!folder.names().contains(&"merged.png".to_owned()));
+    [1, 2, 4, 5, 6].into_iter().for_each(|n| drop(work(n)));
+    folder.run("merge a.plan pieces -o merged.png").expect(0);
+    assert!(folder.get("merged.png") == whole);
+    // A piece of another picture.
+    folder.run(&format!("plan balls.ray -o b.plan --pieces 8 {OPTIONS} --light-samples 3")).expect(0);
+    folder
+        .run("merge b.plan pieces -o merged.png")
+        .expect(1)
+        .says("light samples: 64 in the piece, 3 in the plan");
+    // A scene that has changed since.
+    folder.put("balls.ray", common::BALLS.replace("#background .1", "#background .2").as_bytes());
+    let refused = folder.run("work a.plan --piece 1 -o other").expect(1);
+    refused.says("the plan `a.plan` is of another picture (background and ambient light differ)");
+    folder.run("work a.plan --piece 8 -o pieces").expect(2).says("numbered from 0");
+    folder.run("merge a.plan nowhere -o merged.png").expect(1).says("no folder");
+    folder.put("c.plan", b"{}");
+    folder.run("work c.plan --piece 0 -o pieces").expect(1).says("is no plan");
+    folder.run("plan - -o a.plan --pieces 2").expect(2).says("a scene with a name");
+    folder.run("plan balls.ray -o a.plan --pieces 2 --layers all").expect(2).says("--layers");
+}
+
+#[test]
+fn pieces_take_about_the_same_time() {
+    let folder = Folder::new();
+    // Half of the picture is empty, half of it glass.
+    let glass: String = (0..60)
+        .map(|k| {
+            format!(
+                "#shape_sphere 0 {} {} {} .3\n",
+                0.5 + 0.4 * f64::from(k % 6),
+                0.3 * f64::from(k / 6) - 1.5,
+                -f64::from(k % 7)
+            )
+        })
+        .collect();
+    let scene = format!(
+        "#camera 0 0 5 0 0 -1 0 1 0 .4\n#light_point 1 1 1 3 4 5 1 0 0\n\
+         #material 0 0 0 .2 .2 .2 .9 .9 .9 0 0 0 .5 .9 1.4 -1 !!\n{glass}"
+    );
+    folder.put("glass.ray", scene.as_bytes());
+    folder.run("plan glass.ray -o a.plan --pieces 6 --size 480x360 --recursion 9 --cutoff 0").expect(0);
+    let plan = plan(&folder, "a.plan");
+    let pieces = plan["pieces"].as_array().expect("pieces");
+    let tiles: Vec<u64> =
+        pieces.iter().map(|piece| piece["parts"][0]["count"].as_u64().expect("a number")).collect();
+    let work: Vec<f64> = (0..pieces.len())
+        .map(|n| {
+            // Rays and tests, not seconds: machines are busy.
+            let told =
+                folder.run(&format!("work a.plan --piece {n} -o pieces -vv --log-format json")).expect(0);
+            let rays = |line: &str| serde_json::from_str::<Value>(line).ok()?["rays"].as_f64();
+            told.stderr.lines().filter_map(rays).sum()
+        })
+        .collect();
+    let (least, most) =
+        (work.iter().copied().fold(f64::INFINITY, f64::min), work.iter().copied().fold(0.0, f64::max));
+    assert!(least > 0.0 && most < 2.5 * least, "{work:?} of {tiles:?} tiles");
+    assert!(tiles.iter().max() > tiles.iter().min().map(|least| 2 * least).as_ref(), "{tiles:?}");
+}
+
+#[test]
+fn animations_are_split_by_frames_and_tiles() {
+    let folder = Folder::new();
+    folder.put("turn.toml", b"[camera.turntable]\nframes = 12\n");
+    let options = "--animation turn.toml --frames 3-6 --size 100x75";
+    folder.run(&format!("animate balls.ray {options} -o one.##.png")).expect(0);
+    folder.run(&format!("plan balls.ray {options} -o a.plan --pieces 6")).expect(0);
+    assert_eq!(count(&folder, "a.plan"), 6);
+    (0..5).for_each(|n| drop(folder.run(&format!("work a.plan --piece {n} -o pieces")).expect(0)));
+    let told = folder.run("merge a.plan pieces -o two.##.png").expect(1);
+    told.says("1 of 6 pieces are missing or not whole: 5").says("of 4 frames were written");
+    folder.run("work a.plan --piece 5 -o pieces --progress json").expect(0).says("\"kind\":\"piece\"");
+    folder.run("merge a.plan pieces -o two.##.png").expect(0).says("wrote 4 frames");
+    for frame in 3..=6 {
+        let (one, two) =
+            (folder.get(&format!("one.{frame:02}.png")), folder.get(&format!("two.{frame:02}.png")));
+        assert!(one == two, "frame {frame}");
+    }
+    folder.put("turn.toml", b"[camera.turntable]\nframes = 13\n");
+    folder.run("work a.plan --piece 0 -o other").expect(1).says("animation differ");
+}
+
+/// Runs a recipe of docs/long.md with `dotray` on the path.
+fn recipe(folder: &Folder, script: &str) -> std::process::Output {
+    let program = std::path::Path::new(env!("CARGO_BIN_EXE_dotray"));
+    let bin = program.parent().expect("a folder").display().to_string();
+    let path = format!("{bin}:{}", std::env::var("PATH").unwrap_or_default());
+    let mut command = Command::new("sh");
+    command.args(["-ec", script]).current_dir(folder.path("")).env("PATH", path).output().expect("a shell")
+}
+
+#[test]
+fn the_recipes_of_schedulers_give_each_piece_its_number() {
+    // What each scheduler puts into the environment, or into the line, for its tasks.
+    for (variable, line) in [
+        ("SLURM_ARRAY_TASK_ID", "dotray work a.plan --piece \"$SLURM_ARRAY_TASK_ID\" -o pieces"),
+        ("JOB_COMPLETION_INDEX", "dotray work a.plan --piece \"$JOB_COMPLETION_INDEX\" -o pieces"),
+        ("CUE_IFRAME", "dotray work a.plan --piece \"$CUE_IFRAME\" -o pieces"),
+    ] {
+        let page = std::fs::read_to_string(common::root().join("docs/machines.md")).expect("the page");
+        assert!(page.contains(variable), "{variable} is not on the page");
+        let folder = Folder::new();
+        folder.run(&format!("plan balls.ray -o a.plan --pieces 3 {OPTIONS}")).expect(0);
+        for n in 0..3 {
+            let ended = recipe(&folder, &format!("export {variable}={n}; {line}"));
+            assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+        }
+        folder.run("merge a.plan pieces -o merged.png").expect(0);
+    }
+}
+
+#[test]
+fn gnu_parallel_runs_its_recipe() {
+    let found = Command::new("parallel").arg("--version").output();
+    if !found.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("GNU")) {
+        println!("skipped, no GNU parallel");
+        return;
+    }
+    let folder = Folder::new();
+    folder.run(&format!("render balls.ray whole.png {OPTIONS}")).expect(0);
+    let page = std::fs::read_to_string(common::root().join("docs/machines.md")).expect("the page");
+    let recipes: Vec<&str> =
+        page.split("```sh\n").skip(1).filter_map(|block| block.split("```").next()).collect();
+    let local = recipes.iter().find(|block| block.contains("parallel") && !block.contains("--sshlogin"));
+    let script = local
+        .expect("a recipe")
+        .replace("room.ray", "balls.ray")
+        .replace("--size 4000x3000 --aa adaptive", OPTIONS);
+    assert!(script.contains(OPTIONS), "{script}");
+    let ended = recipe(&folder, &script);
+    assert!(ended.status.success(), "{script}\n{}", String::from_utf8_lossy(&ended.stderr));
+    assert!(folder.get("room.png") == folder.get("whole.png"));
+}
