@@ -148,6 +148,20 @@ fn pictures_and_colours_lie_behind() {
     folder.run("render balls.ray on.ppm 40 30 --background image:back.ppm").expect(0);
     let on = picture(&folder, "on.ppm");
     assert_eq!((on.pixel(0, 0), on.pixel(39, 0)), (Some([1.0, 0.0, 0.0, 1.0]), Some([0.0, 0.0, 1.0, 1.0])));
+    // At a silhouette both show: a picture of the scene's own background changes nothing.
+    let flat: Vec<u8> = [0.1_f32, 0.2, 0.3].iter().flat_map(|x| x.to_le_bytes()).collect();
+    folder.put("flat.pfm", &[b"PF\n1 1\n-1.0\n", flat.as_slice()].concat());
+    folder.run("render balls.ray own.pfm 40 30 --aa grid=4").expect(0);
+    folder.run("render balls.ray flat-behind.pfm 40 30 --aa grid=4 --background image:flat.pfm").expect(0);
+    let [own, behind] = ["own.pfm", "flat-behind.pfm"].map(|name| picture(&folder, name));
+    assert!(own.samples().iter().zip(behind.samples()).all(|(a, b)| (a - b).abs() < 1e-5));
+    // A colour is seen in mirrors, too.
+    let mirror = "#camera 0 0 4 0 0 -1 0 1 0 .5  #light_dir 1 1 1 0 0 -1  #background 0 0 0
+        #material 0 0 0 0 0 0 1 1 1 0 0 0 1 0 1 -1 !!  #shape_box 0 0 0 0 9 9 1";
+    folder.put("mirror.ray", mirror.as_bytes());
+    folder.run("render mirror.ray seen.ppm 4 4 --background 0,1,0 --shadows off").expect(0);
+    let seen = picture(&folder, "seen.ppm").pixel(0, 0).expect("a pixel");
+    assert!(seen[1] == 1.0 && seen[0] < 1.0, "{seen:?}");
     // A part of it has the same part of the background.
     folder.run("render balls.ray part.ppm 40 30 --background image:back.ppm --crop 10,0,25,9").expect(0);
     assert_eq!(picture(&folder, "part.ppm"), on.crop(10, 0, 25, 9).expect("inside"));
@@ -172,7 +186,9 @@ fn boxes_are_drawn_over_the_picture() {
         let scene = root().join("scenes/caffeine.ray");
         for (name, overlay) in [("plain", ""), ("accel", "--overlay accel")] {
             let more = if overlay.is_empty() { "" } else { more };
-            folder.run(&format!("render {} {name}.ppm 120 90 {overlay} {more}", scene.display())).expect(0);
+            folder
+                .run(&format!("render {} {name}.ppm 120 90 --shadows off {overlay} {more}", scene.display()))
+                .expect(0);
         }
         let [plain, boxes] = ["plain.ppm", "accel.ppm"].map(|name| picture(&folder, name));
         (0..120 * 90).filter(|i| plain.pixel(i % 120, i / 120) != boxes.pixel(i % 120, i / 120)).count()
