@@ -53,7 +53,7 @@ const LOST: f64 = 55.2;
 fn log2_above(x: f64) -> f64 {
     let bits = x.to_bits();
     let exponent = (bits >> 52) as f64 - 1023.0;
-    let rest = f64::from_bits(bits & (1 << 52) - 1 | 1023 << 52);
+    let rest = f64::from_bits(bits & ((1 << 52) - 1) | (1023 << 52));
     exponent + 0.585 + (rest - 1.5) * 0.9618
 }
 
