@@ -15,12 +15,14 @@ use crate::input::Boxes;
 use crate::input::GroupEvent;
 use crate::input::Kind;
 use crate::input::MAX_ITEMS;
+use crate::input::Quality;
 use crate::input::Settings;
 use crate::narrow::Frame;
 use crate::octree::Octree;
 use crate::query::Queries;
 use crate::simd::Level;
 use crate::simd::dispatch;
+use crate::stats::Cell;
 use crate::stats::Defect;
 use crate::stats::Stats;
 use dotray_geometry::Aabb;
@@ -151,6 +153,17 @@ impl Accelerator {
         Stats { bytes: self.memory(), ..stats }
     }
 
+    /// Its boxes (or cells), level by level from the one around all items: the first `most` of them.
+    pub fn cells(&self, most: usize) -> Vec<Cell> {
+        match &self.structure {
+            Structure::Brute if self.bounds.is_empty() => Vec::new(),
+            Structure::Brute => vec![Cell { bounds: self.bounds, depth: 0, is_leaf: true }],
+            Structure::Tree(tree) => tree.cells(most),
+            Structure::Octree(octree) => octree.cells(most),
+            Structure::Bsp(bsp) => bsp.cells(most),
+        }
+    }
+
     /// Checks the structure against the boxes it was built over and the order that the build gave: each item is in
     /// one leaf, or in all whose cells it touches, and every box holds what stands below it.
     ///
@@ -220,6 +233,9 @@ fn union(boxes: &impl Boxes) -> Aabb {
         .reduce(|| Aabb::EMPTY, Aabb::union)
 }
 
+/// So many items always get the best tree: 10 ms at most.
+const SMALL: usize = 1 << 14;
+
 /// The tree of a BVH and the order of its leaves.
 fn build_bvh(boxes: &impl Boxes, frame: Frame, settings: &Settings) -> (Tree, Vec<u32>) {
     let mut references: Vec<_> = (0..boxes.len())
@@ -227,8 +243,13 @@ fn build_bvh(boxes: &impl Boxes, frame: Frame, settings: &Settings) -> (Tree, Ve
         .with_min_len(1 << 12)
         .map(|item| Reference::new(frame.narrow(&boxes.bounds(item)), item))
         .collect();
+    // A small tree is built in no time, whatever its quality.
+    let quality = match settings.quality {
+        Quality::Balanced if references.len() <= SMALL => Quality::Best,
+        quality @ (Quality::Fast | Quality::Balanced | Quality::Best) => quality,
+    };
     let mut nodes = Vec::new();
-    let root: Child = Builder { quality: settings.quality }.build(&mut references, 0, &mut nodes);
+    let root: Child = Builder { quality }.build(&mut references, 0, &mut nodes);
     let order = references.par_iter().with_min_len(1 << 12).map(Reference::number).collect();
     drop(references);
     (Tree::new(frame, nodes, root), order)

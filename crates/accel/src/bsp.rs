@@ -21,8 +21,11 @@ use crate::input::Boxes;
 use crate::input::Kind;
 use crate::query::Queries;
 use crate::query::Query;
+use crate::stats::Below;
+use crate::stats::Cell;
 use crate::stats::Defect;
 use crate::stats::Stats;
+use crate::stats::level_by_level;
 use dotray_geometry::Aabb;
 
 /// A cell's planes are chosen among this many less one an axis.
@@ -162,6 +165,18 @@ impl Bsp {
             }
         }
         leaves
+    }
+
+    /// The first cells, level by level; empty leaves are left out.
+    pub fn cells(&self, most: usize) -> Vec<Cell> {
+        let is_empty = |node: &u32| matches!(self.nodes[*node as usize], Node::Leaf(leaf) if leaf.count == 0);
+        level_by_level((0, self.scene), most, |&node, cell| match self.nodes[node as usize] {
+            Node::Cut { plane, first } => {
+                let parts = (first..).zip(parts(cell, plane));
+                Some(parts.filter(|(node, _)| !is_empty(node)).collect::<Below<u32>>())
+            }
+            Node::Leaf(_) => None,
+        })
     }
 
     /// The share of the scene's surface.

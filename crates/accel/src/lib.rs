@@ -87,4 +87,4 @@ pub use batch::Batch;
 pub use input::{Boxes, GroupEvent, Kind, MAX_ITEMS, Quality, Settings};
 pub use query::{ENDLESS, Queries, Query};
 pub use simd::Level;
-pub use stats::{Defect, Stats};
+pub use stats::{Cell, Defect, Stats};

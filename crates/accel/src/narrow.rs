@@ -115,6 +115,12 @@ impl Frame {
         }
     }
 
+    /// The box of the world that a narrow one stands for: the one that was narrowed, with what rounding added.
+    pub fn widen(&self, bounds: &NarrowBox) -> Aabb {
+        let corner = |point: [f32; 3]| self.center + Vec3::from_array(point.map(f64::from)) / self.scale;
+        Aabb::new(corner(bounds.low), corner(bounds.high))
+    }
+
     /// How long one unit of the world is in the frame.
     pub fn scale(&self) -> f64 {
         self.scale

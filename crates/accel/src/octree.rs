@@ -21,8 +21,11 @@ use crate::input::Boxes;
 use crate::input::Kind;
 use crate::query::Queries;
 use crate::query::Query;
+use crate::stats::Below;
+use crate::stats::Cell;
 use crate::stats::Defect;
 use crate::stats::Stats;
+use crate::stats::level_by_level;
 use dotray_geometry::Aabb;
 use dotray_geometry::Vec3;
 
@@ -137,6 +140,18 @@ impl Octree {
             }
         }
         leaves
+    }
+
+    /// The first cells, level by level; empty leaves are left out.
+    pub fn cells(&self, most: usize) -> Vec<Cell> {
+        let is_empty = |node: &u32| matches!(self.nodes[*node as usize], Node::Leaf(leaf) if leaf.count == 0);
+        level_by_level((0, self.cube), most, |&node, cell| match self.nodes[node as usize] {
+            Node::Cut { first } => {
+                let parts = (0..8).map(|octant| (first + octant, part(cell, octant)));
+                Some(parts.filter(|(node, _)| !is_empty(node)).collect::<Below<u32>>())
+            }
+            Node::Leaf(_) => None,
+        })
     }
 
     /// The share of the cube's surface.

@@ -1,6 +1,8 @@
 //! What an accelerator looks like inside, as data for dumps and tests.
 
 use crate::input::Kind;
+use dotray_geometry::Aabb;
+use std::collections::VecDeque;
 use std::fmt;
 
 /// The figures of a built accelerator.
@@ -74,6 +76,40 @@ impl fmt::Display for Stats {
             self.bytes
         )
     }
+}
+
+/// A box (or cell) of a structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Where it is.
+    pub bounds: Aabb,
+    /// How many nodes stand above it.
+    pub depth: u32,
+    /// Whether it holds items itself.
+    pub is_leaf: bool,
+}
+
+/// What may stand below a box: a node `N` of the structure and its box.
+pub(crate) type Below<N> = Vec<(N, Aabb)>;
+
+/// The first `most` boxes of a structure, level by level from its top, so that what is left out are the smallest.
+/// `below` answers with what stands below a node, or `None` for a leaf.
+pub(crate) fn level_by_level<N>(
+    top: (N, Aabb),
+    most: usize,
+    mut below: impl FnMut(&N, &Aabb) -> Option<Below<N>>,
+) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    let mut waiting = VecDeque::from([(top, 0)]);
+    while let Some(((node, bounds), depth)) = waiting.pop_front().filter(|_| cells.len() < most) {
+        let children = below(&node, &bounds);
+        cells.push(Cell { bounds, depth, is_leaf: children.is_none() });
+        // What does not fit any more need not wait.
+        let room = most - cells.len();
+        let children = children.into_iter().flatten().take(room.saturating_sub(waiting.len()));
+        waiting.extend(children.map(|child| (child, depth + 1)));
+    }
+    cells
 }
 
 /// Why a structure is not well formed; only a fault of the builder can make one.

@@ -311,6 +311,37 @@ fn all_but_brute_force_save_ten_times_the_work() {
     }
 }
 
+#[test]
+fn cells_are_shown_level_by_level() {
+    let scene = spheres(3_000, 2.0, 19);
+    let within = |inner: &Aabb, outer: &Aabb| {
+        let slack = 1e-5;
+        inner.min.cmpge(outer.min - slack).all() && inner.max.cmple(outer.max + slack).all()
+    };
+    for kind in [Kind::Brute, Kind::Boxes, Kind::Octree, Kind::Bsp, Kind::Bvh] {
+        let accelerator = build(kind, &scene, &[]).accelerator;
+        let cells = accelerator.cells(usize::MAX);
+        let stats = accelerator.stats();
+        let name = kind.name();
+        assert_eq!(cells.iter().filter(|cell| cell.is_leaf).count(), stats.leaves, "{name}");
+        assert_eq!(cells.iter().map(|cell| cell.depth).max(), Some(stats.depth), "{name}");
+        assert!(within(&accelerator.bounds(), &cells[0].bounds) && cells[0].depth == 0, "{name}");
+        assert!(cells.is_sorted_by_key(|cell| cell.depth), "{name}");
+        for cell in &cells[1..] {
+            let above = cells.iter().filter(|above| !above.is_leaf && above.depth + 1 == cell.depth);
+            assert!(above.into_iter().any(|above| within(&cell.bounds, &above.bounds)), "{name}: {cell:?}");
+        }
+        for sphere in &scene.0 {
+            let bounds = Aabb::new(sphere.center, sphere.center);
+            let mut leaves = cells.iter().filter(|cell| cell.is_leaf);
+            assert!(leaves.any(|leaf| within(&bounds, &leaf.bounds)), "{name}: {sphere:?}");
+        }
+        let few = accelerator.cells(20);
+        assert_eq!(few, cells[..20.min(cells.len())], "{name}");
+    }
+    assert!(build(Kind::Bvh, &spheres(0, 1.0, 1), &[]).accelerator.cells(9).is_empty());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 

@@ -4,7 +4,7 @@ use clap::Args;
 use clap::ValueEnum;
 use std::path::PathBuf;
 
-use crate::reading_args::LimitArgs;
+use crate::reading_args::ReadingArgs;
 
 /// `dotray check`.
 #[derive(Debug, Args)]
@@ -36,9 +36,9 @@ pub struct CheckArgs {
     #[arg(long, value_name = "CODE", conflicts_with_all = ["files", "strict"])]
     pub explain: Option<String>,
 
-    /// How much the scenes may ask for.
+    /// How the scenes are read.
     #[command(flatten)]
-    pub limits: LimitArgs,
+    pub reading: ReadingArgs,
 }
 
 /// How `check` prints.
@@ -85,7 +85,7 @@ pub struct FormatArgs {
     #[arg(long, conflicts_with = "check")]
     pub stdout: bool,
 
-    /// How much the files may ask for.
+    /// How the files are read.
     #[command(flatten)]
-    pub limits: LimitArgs,
+    pub reading: ReadingArgs,
 }

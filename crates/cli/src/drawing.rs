@@ -35,6 +35,15 @@ impl View {
     }
 }
 
+/// On which side of a mark its word stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Above it.
+    Above,
+    /// Below it.
+    Below,
+}
+
 /// The edge of a view in the drawing.
 const EDGE: f64 = 560.0;
 const GAP: f64 = 20.0;
@@ -106,13 +115,20 @@ impl Drawing {
         });
     }
 
-    /// A dot with a word beside it.
-    pub fn mark(&mut self, at: Vec3, fill: &str, word: &str) {
+    /// A dot with a word beside it, above or below, which stays inside the view.
+    pub fn mark(&mut self, at: Vec3, fill: &str, word: &str, side: Side) {
+        let width = 6.5 * word.chars().count() as f64;
         let word = escaped(word);
         self.each(|drawing, view| {
             let (x, y) = drawing.place(view, at);
             let dot = format!("<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3.5\" fill=\"{fill}\"/>");
-            format!("{dot}<text x=\"{:.2}\" y=\"{:.2}\" font-size=\"11\">{word}</text>\n", x + 5.0, y - 5.0)
+            let down = match side {
+                Side::Above => -5.0,
+                Side::Below => 14.0,
+            };
+            // The view's own title stands in its first line.
+            let (x, y) = ((x + 5.0).min(EDGE - width - 4.0), (y + down).clamp(30.0, EDGE - 4.0));
+            format!("{dot}<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"11\">{word}</text>\n")
         });
     }
 

@@ -256,3 +256,58 @@ impl Explanation<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dotray::render::PrepareOptions;
+    use dotray::scene::files::Disk;
+    use dotray::scene::load::LoadOptions;
+    use dotray::scene::load::load_text;
+    use dotray::scene::resolve::resolve;
+
+    const SCENE: &str = "#camera 0 0 4  0 0 -1  0 1 0  .5  #light_dir 1 1 1  0 -1 -1
+        #material 1 1 1  1 1 1  .5 .5 .5  0 0 0  .5 0 1 -1 !!  #shape_sphere 0  0 0 0  1  #shape_sphere 0  0 2 2  1";
+
+    /// The checks are worth something only if they can fail.
+    #[test]
+    fn a_term_that_is_off_by_a_bit_is_noticed() {
+        let scene = load_text("t", SCENE, &Disk, &LoadOptions::default()).scene.expect("a scene");
+        let resolved = resolve(scene).resolved.expect("it is sound");
+        let world = World::prepare(resolved.clone(), &Disk, &PrepareOptions::default()).expect("a world");
+        let options = Options { width: 8, height: 8, ..Options::default() };
+        let sampling = sample_pixel(&world, &options, 4, 4);
+        let camera = Camera::new(world.camera(), 8, 8);
+        let ray = camera.ray(4.5, 4.5);
+        let root = Tracer::new(&world, &options, level()).inspect(ray).expect("a tree");
+        let rendered = sampling.mean.to_array().map(|x| x as f32);
+        let told = |root: &RayNode, rendered: [f32; 3]| {
+            let explanation = Explanation {
+                scene: String::new(),
+                options: &options,
+                accelerator: "bvh",
+                pixel: Some((4, 3)),
+                sampling: sampling.clone(),
+                chosen: 0,
+                rays: listed(root),
+                rendered: Some(rendered),
+                world: &world,
+                resolved: &resolved,
+                shapes: BTreeMap::new(),
+                lights: Vec::new(),
+                visits: Vec::new(),
+            };
+            (explanation.sums_agree(), explanation.pixel_agrees())
+        };
+        assert_eq!(told(&root, rendered), (true, Some(true)));
+        let mut off = root.clone();
+        off.color.y = f64::from_bits(off.color.y.to_bits() + 1);
+        assert_eq!(told(&off, rendered), (false, Some(false)));
+        let mut off = root.clone();
+        let Some(met) = &mut off.meeting else { panic!("the middle meets the ball") };
+        met.own_light.x += 1e-9;
+        assert_eq!(told(&off, rendered), (false, Some(true)));
+        let [r, g, b] = rendered;
+        assert_eq!(told(&root, [r, g, f32::from_bits(b.to_bits() + 1)]), (true, Some(false)));
+    }
+}

@@ -46,7 +46,8 @@ impl Extras {
             output::check(&Place::File(path), &plan.input)?;
         }
         let wires = match plan.overlay {
-            None => Vec::new(),
+            // The accelerator is not there yet.
+            None | Some(Overlay::Accel) => Vec::new(),
             Some(Overlay::Bounds) => overlay::group_wires(&Tree::new(resolved, sources)),
         };
         Ok(Self { back, wires })
@@ -58,7 +59,13 @@ impl Extras {
             Some(back) => background::composed(&image, back, &plan.options)?,
             None => image,
         };
-        overlay::draw(&mut image, &self.wires, world.camera(), &plan.options);
+        let accelerator = match plan.overlay {
+            None | Some(Overlay::Bounds) => Vec::new(),
+            Some(Overlay::Accel) => overlay::accelerator_wires(world.caster()),
+        };
+        let wires = self.wires.iter().chain(&accelerator);
+        let wires = wires.filter(|wire| wire.depth < plan.overlay_levels);
+        overlay::draw(&mut image, wires, world.camera(), &plan.options);
         Ok(image)
     }
 }

@@ -32,7 +32,7 @@ use crate::reading_args::ReadingArgs;
 /// The disk, or a folder of it, with a clock: what reading took.
 pub struct TimedDisk {
     nanoseconds: AtomicU64,
-    disk: Box<dyn Files>,
+    disk: Box<dyn Files + Send>,
 }
 
 impl TimedDisk {

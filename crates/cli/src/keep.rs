@@ -126,11 +126,12 @@ impl Keep {
         let mut all = Vec::new();
         film.tiles().iter().filter_map(|tile| film.pixels(tile)).for_each(|tile| all.extend(tile.to_bytes()));
         drop(film);
-        file.append(&all)?;
+        // Said before the file is there, lest nobody hears it who only waits for the file.
         say(&format!(
-            "warning: the checkpoint `{}` had vanished; it is there again, with all that is finished",
+            "warning: the checkpoint `{}` had vanished; all that is finished goes into a new one",
             self.path.display()
         ));
+        file.append(&all)?;
         state.pending.clear();
         state.file = file;
         Ok(())

@@ -69,6 +69,8 @@ impl FromStr for Layers {
 pub enum Overlay {
     /// The boxes around the scene's groups, as wires
     Bounds,
+    /// The boxes (or cells) of the accelerator, as wires
+    Accel,
 }
 
 #[cfg(test)]

@@ -150,3 +150,74 @@ fn write(image: &mut Image, x: usize, y: usize, text: &str) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layer(layer: Layer, samples: &[f32]) -> LayerPicture {
+        let width = samples.len() / layer.channels().len();
+        LayerPicture { layer, width, height: 1, samples: samples.to_vec() }
+    }
+
+    fn pixels(picture: &LayerPicture) -> Vec<[f32; 3]> {
+        let image = shown(picture).expect("a picture");
+        (0..picture.width).filter_map(|x| image.pixel(x, 0)).map(|[r, g, b, _]| [r, g, b]).collect()
+    }
+
+    #[test]
+    fn channels_keep_their_numbers() {
+        let all = channels(vec![
+            layer(Layer::Normal, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+            layer(Layer::Shape, &[7.0, 8.0]),
+        ]);
+        let told: Vec<(&str, &[f32])> = all.iter().map(|c| (c.name.as_str(), c.samples.as_slice())).collect();
+        let expected: [(&str, &[f32]); 4] = [
+            ("normal.X", &[1.0, 4.0]),
+            ("normal.Y", &[2.0, 5.0]),
+            ("normal.Z", &[3.0, 6.0]),
+            ("shape.id", &[7.0, 8.0]),
+        ];
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn people_see_what_the_numbers_say() {
+        assert_eq!(
+            pixels(&layer(Layer::Normal, &[0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
+            [[0.5, 0.5, 1.0], [0.0, 0.5, 0.5], [0.0; 3]]
+        );
+        assert_eq!(
+            pixels(&layer(Layer::St, &[0.25, 0.5, 1.25, -0.25])),
+            [[0.25, 0.5, 0.0], [0.25, 0.75, 0.0]]
+        );
+        let stretched = pixels(&layer(Layer::Position, &[2.0, -1.0, 5.0, 4.0, 1.0, 5.0, 3.0, 0.0, 5.0]));
+        assert_eq!(stretched, [[0.0, 0.0, 0.5], [1.0, 1.0, 0.5], [0.5, 0.5, 0.5]]);
+        let ids = pixels(&layer(Layer::Shape, &[-1.0, 0.0, 1.0, 2.0, 0.0]));
+        assert_eq!((ids[0], ids[1]), ([0.0; 3], ids[4]));
+        let far = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 0.1);
+        assert!(far(ids[1], ids[2]) && far(ids[2], ids[3]) && far(ids[1], ids[3]), "{ids:?}");
+    }
+
+    #[test]
+    fn a_legend_names_the_least_and_the_greatest() {
+        let mut samples = vec![5.0; 200];
+        samples[7] = 1234.0;
+        let image = shown(&layer(Layer::Rays, &samples)).expect("a picture");
+        let white = |columns: std::ops::Range<usize>| {
+            let rows = BAR_ROWS..LEGEND_ROWS;
+            let lit = rows.flat_map(|y| columns.clone().map(move |x| (x, y + 1)));
+            lit.filter(|&(x, y)| image.pixel(x, y) == Some([1.0; 4])).count()
+        };
+        // A `5` on the left, `1234` on the right, the layer's name between.
+        assert!((5..40).contains(&white(0..9)), "{}", white(0..9));
+        assert_eq!(white(9..60), 0);
+        assert!(white(160..200) > 40 && white(80..120) > 40);
+        // The map runs from dark to bright.
+        let [low, high] = [0, 7].map(|x| image.pixel(x, 0).expect("a pixel"));
+        assert!(
+            low.iter().take(3).sum::<f32>() < 0.1 && high.iter().take(3).sum::<f32>() > 2.0,
+            "{low:?} {high:?}"
+        );
+    }
+}

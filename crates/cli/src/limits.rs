@@ -41,15 +41,19 @@ pub fn load_limits(typed: &LimitArgs) -> load::Limits {
     }
 }
 
-/// How much instances may multiply. What `--max-shapes` raises, their groups may come to as well.
+/// How much instances may multiply.
 pub fn resolve_limits(typed: &LimitArgs) -> resolve::Limits {
     let defaults = resolve::Limits::default();
     let shapes = typed.max_shapes.map_or(defaults.shapes, u64::from);
-    resolve::Limits { shapes, ..defaults }
+    match typed.max_groups.map(u64::from) {
+        None => resolve::Limits { shapes, ..defaults },
+        // A group is a step to its begin and one to its end; an instance is two more around what it holds.
+        Some(groups) => resolve::Limits { shapes, runs: groups, steps: 4 * groups },
+    }
 }
 
 /// The files that may be read.
-pub fn reachable(typed: &LimitArgs) -> Result<Box<dyn Files>, Failure> {
+pub fn reachable(typed: &LimitArgs) -> Result<Box<dyn Files + Send>, Failure> {
     match &typed.confine {
         None => Ok(Box::new(Disk)),
         Some(folder) => match Confined::new(Disk, folder) {

@@ -1,11 +1,13 @@
 //! Where a picture goes: looked at before minutes are spent on it, written whole or not at all.
 
 use dotray::image::write_file;
+use dotray::image::write_files;
 use std::fs;
 use std::fs::OpenOptions;
 use std::io;
 use std::io::IsTerminal;
 use std::path::Path;
+use std::path::PathBuf;
 
 use crate::exit::Failure;
 use crate::exit::put;
@@ -64,6 +66,15 @@ fn check_file(path: &Path) -> io::Result<()> {
     fs::remove_file(&probe)
 }
 
+/// Writes the picture's file and further ones: all of them, or none. Where that fails, the picture is stored elsewhere.
+pub fn write_all(output: &Place, bytes: &[u8], more: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+    let Place::File(path) = output else { return write(output, bytes) };
+    let more = more.iter().map(|(path, bytes)| (path.as_path(), bytes.as_slice()));
+    let files: Vec<_> = std::iter::once((path.as_path(), bytes)).chain(more).collect();
+    // The message names the file.
+    write_files(&files).map_err(|error| rescued(error.to_string(), path, bytes))
+}
+
 /// Writes the picture's file.
 pub fn write(output: &Place, bytes: &[u8]) -> Result<(), Failure> {
     match output {
@@ -73,14 +84,12 @@ pub fn write(output: &Place, bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes the picture's file; where that fails, it goes to the folder for temporary files, so that no work is lost.
-pub fn write_or_rescue(output: &Place, bytes: &[u8]) -> Result<(), Failure> {
-    let Err(failure) = write(output, bytes) else { return Ok(()) };
-    let (Failure::Failed(message), Place::File(path)) = (&failure, output) else { return Err(failure) };
+/// The failure to write a picture, which goes to the folder for temporary files, so that the work is not lost.
+fn rescued(message: String, path: &Path, bytes: &[u8]) -> Failure {
     let name = path.file_name().unwrap_or("picture".as_ref()).to_string_lossy().into_owned();
     let rescue = std::env::temp_dir().join(format!("dotray-{}-{name}", std::process::id()));
     match write_file(&rescue, bytes) {
-        Ok(()) => Err(Failure::Failed(format!("{message}\nthe picture is in `{}`", rescue.display()))),
-        Err(_) => Err(failure),
+        Ok(()) => Failure::Failed(format!("{message}\nthe picture is in `{}`", rescue.display())),
+        Err(_) => Failure::Failed(message),
     }
 }

@@ -3,6 +3,7 @@
 use dotray::Image;
 use dotray::geometry::Aabb;
 use dotray::geometry::Vec3;
+use dotray::render::Caster;
 use dotray::render::Options;
 use dotray::render::camera::Camera;
 use dotray::scene::model;
@@ -14,18 +15,27 @@ use crate::tree::Tree;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wire {
     bounds: Aabb,
-    depth: usize,
+    /// 0 for the outermost.
+    pub depth: usize,
 }
 
-/// The boxes of a scene's groups and instances: at most so many as still let the picture show.
+/// At most so many boxes are drawn, so that the picture still shows.
+const MOST: usize = 100_000;
+
+/// The boxes of a scene's groups and instances.
 pub fn group_wires(tree: &Tree<'_>) -> Vec<Wire> {
-    const MOST: usize = 100_000;
     let is_group = |kind: &NodeKind| match kind {
         NodeKind::Root | NodeKind::Group(_) | NodeKind::Instance(_) => true,
         NodeKind::Shapes(..) => false,
     };
     let groups = tree.nodes.iter().filter(|node| is_group(&node.kind) && !node.bounds.is_empty());
     groups.map(|node| Wire { bounds: node.bounds, depth: node.depth }).take(MOST).collect()
+}
+
+/// The boxes of the accelerator, level by level.
+pub fn accelerator_wires(caster: &Caster) -> Vec<Wire> {
+    let cells = caster.accelerator_cells(MOST);
+    cells.into_iter().map(|cell| Wire { bounds: cell.bounds, depth: cell.depth as usize }).collect()
 }
 
 /// Colours by depth, again from the start: far apart from each other.
@@ -52,7 +62,12 @@ fn segment(camera: &Camera, options: &Options, from: Vec3, to: Vec3) -> Option<[
 }
 
 /// Draws the boxes, the outer ones first.
-pub fn draw(image: &mut Image, wires: &[Wire], camera: &model::Camera, options: &Options) {
+pub fn draw<'a>(
+    image: &mut Image,
+    wires: impl Iterator<Item = &'a Wire>,
+    camera: &model::Camera,
+    options: &Options,
+) {
     let camera = Camera::new(camera, options.width, options.height);
     for Wire { bounds, depth } in wires {
         let color = COLORS.get(depth % COLORS.len()).copied().unwrap_or([1.0; 3]);

@@ -6,6 +6,7 @@ use dotray_render::PrepareOptions;
 use dotray_render::RenderError;
 use dotray_render::Silent;
 use dotray_render::World;
+use dotray_render::on_threads;
 use dotray_scene::Diagnostic;
 use dotray_scene::files::Disk;
 use dotray_scene::load::LoadOptions;
@@ -53,7 +54,8 @@ impl std::error::Error for SceneError {}
 /// [`Error::Scene`] with every fault that was found, [`Error::Render`] for options that make no sense.
 pub fn render_file(path: &Path, options: &Options) -> Result<Image, Error> {
     options.validate()?;
-    picture(load(path, &Disk, &LoadOptions::default()), options)
+    let load = || load(path, &Disk, &LoadOptions::default());
+    picture(on_threads(options.threads, load)?, options)
 }
 
 /// Renders a scene given as text; the names of textures in it are relative to the working directory.
@@ -67,7 +69,8 @@ pub fn render_file(path: &Path, options: &Options) -> Result<Image, Error> {
 /// ```
 pub fn render_text(text: &str, options: &Options) -> Result<Image, Error> {
     options.validate()?;
-    picture(load_text("<text>", text, &Disk, &LoadOptions::default()), options)
+    let load = || load_text("<text>", text, &Disk, &LoadOptions::default());
+    picture(on_threads(options.threads, load)?, options)
 }
 
 fn picture(loaded: Loaded, options: &Options) -> Result<Image, Error> {

@@ -47,6 +47,8 @@ pub struct Plan {
     pub layers: Vec<Layer>,
     /// What is drawn over the picture.
     pub overlay: Option<Overlay>,
+    /// How many levels of boxes.
+    pub overlay_levels: usize,
     /// How the work is kept and shown.
     pub long: LongArgs,
     /// Print errors only.
@@ -94,6 +96,7 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
         background: typed.background.clone(),
         layers,
         overlay: typed.overlay,
+        overlay_levels: typed.overlay_levels.unwrap_or(usize::MAX),
         long: typed.long.clone(),
         quiet: typed.quiet,
         stats: typed.stats,

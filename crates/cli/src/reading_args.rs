@@ -41,6 +41,10 @@ pub struct LimitArgs {
     /// How many shapes a scene may have, instances counted as often as they stand [default: 2147483648].
     #[arg(long, value_name = "N")]
     pub max_shapes: Option<u32>,
+    /// How many groups and runs of shapes of one kind a scene may come to, instances counted as often as they stand
+    /// [default: 10000000].
+    #[arg(long, value_name = "N")]
+    pub max_groups: Option<u32>,
     /// The most memory that shapes, accelerator and picture may take, estimated before it is taken, in bytes or such as
     /// 500M or 4G [default: what the machine has].
     #[arg(long, value_name = "BYTES")]

@@ -102,6 +102,9 @@ pub struct RenderArgs {
     /// Drawn over the picture.
     #[arg(long, value_enum, value_name = "WHAT", help_heading = PICTURE)]
     pub overlay: Option<Overlay>,
+    /// Of the boxes drawn over the picture, those of so many outer levels [default: all, at most 100000 boxes].
+    #[arg(long, value_name = "N", requires = "overlay", help_heading = PICTURE)]
+    pub overlay_levels: Option<usize>,
 
     /// How deep mirrored and refracted rays may go, in place of RECURSION.
     #[arg(long, visible_alias = "rLimit", value_name = "N", help_heading = LIGHT)]

@@ -4,8 +4,12 @@ mod common;
 
 use common::Folder;
 use common::root;
+use dotray::geometry::Ray;
+use dotray::geometry::Sphere;
+use dotray::geometry::Vec3;
 use dotray::image::Limits;
 use dotray::image::decode;
+use dotray::scene::number::General;
 use serde_json::Value;
 
 /// All shapes of a small world: a mirror, glass, a blocker, three kinds of lights.
@@ -121,6 +125,269 @@ fn branches_say_why_they_end() {
     assert_eq!(ended("--cutoff 0.5", "reflected"), "threshold");
     let told = explained(&folder, "all.ray 50 70 --size 100x80");
     assert_eq!(told["rays"][0]["hit"]["refracted"]["ended"], "no-weight");
+}
+
+fn vec3(value: &Value) -> Vec3 {
+    Vec3::from_slice(&numbers(value))
+}
+
+fn near(a: Vec3, b: Vec3) -> bool {
+    (a - b).length() <= 1e-9 * (1.0 + b.length())
+}
+
+/// What is told of a ray hangs together: places, directions, depths, weights.
+fn check_ray(rays: &[Value], ray: &Value) {
+    let (origin, direction) = (vec3(&ray["origin"]), vec3(&ray["direction"]));
+    assert!((direction.length() - 1.0).abs() < 1e-9);
+    let depth = ray["depth"].as_u64().expect("a depth");
+    match ray["parent"].as_u64() {
+        None => {
+            assert_eq!((depth, vec3(&ray["contribution"])), (0, Vec3::ONE));
+            assert!(near(origin, Vec3::new(0.0, 0.0, 4.0)) && ray["kind"] == "eye");
+        }
+        Some(parent) => {
+            let parent = &rays[parent as usize];
+            assert_eq!(Some(depth), parent["depth"].as_u64().map(|depth| depth + 1));
+            let product = vec3(&parent["contribution"]) * vec3(&ray["weight"]);
+            assert!(near(vec3(&ray["contribution"]), product), "{ray:#}");
+            assert!(near(origin, vec3(&parent["hit"]["point"])));
+            if ray["kind"] == "reflected" {
+                assert!(near(direction, vec3(&parent["hit"]["mirrored"])), "{ray:#}");
+            }
+        }
+    }
+    if ray["hit"].is_object() {
+        check_hit(ray, origin, direction);
+    }
+}
+
+/// The shape, the point, the normals.
+fn check_hit(ray: &Value, origin: Vec3, direction: Vec3) {
+    let hit = &ray["hit"];
+    let point = vec3(&hit["point"]);
+    let t = hit["t"].as_f64().expect("a number");
+    assert!(near(origin + direction * t, point), "{hit:#}");
+    let entering = hit["entering"].as_bool().expect("yes or no");
+    for normal in ["normal", "geometric_normal"] {
+        let [before, after] = ["before", "after"].map(|side| vec3(&hit[normal][side]));
+        assert!(after.dot(direction) <= 0.0 && (before.dot(direction) <= 0.0) == entering, "{hit:#}");
+        assert!(near(before, if entering { after } else { -after }), "{hit:#}");
+    }
+    let normal = vec3(&hit["normal"]["after"]);
+    assert!(near(vec3(&hit["mirrored"]), direction - normal * (2.0 * direction.dot(normal))));
+    let object = vec3(&hit["object_point"]);
+    let (kind, number) = (hit["shape"]["kind"].as_str(), hit["shape"]["number"].as_u64());
+    let sphere = |center: Vec3, radius: f64| {
+        assert!((object.distance(center) - radius).abs() < 1e-9 && near(object, point), "{hit:#}");
+        let sphere = Sphere::new(center, radius).expect("a sphere");
+        let own = Ray::new(object + 9.0 * (object - center), center - object);
+        let crossing = sphere.crossings(&own).as_slice()[0];
+        let st = sphere.surface(&own, crossing).texcoord.get();
+        let told = numbers(&hit["st"]);
+        assert!((st.x - told[0]).abs() < 1e-9 && (st.y - told[1]).abs() < 1e-9, "{hit:#}");
+        assert!(near(vec3(&hit["geometric_normal"]["before"]), (object - center) / radius), "{hit:#}");
+    };
+    match (kind, number) {
+        // Its groups lower the box by 1.
+        (Some("box"), Some(0)) => assert!(entering && near(object - Vec3::Y, point), "{hit:#}"),
+        (Some("sphere"), Some(1)) => sphere(Vec3::new(-0.6, 0.0, 1.0), 0.5),
+        (Some("sphere"), Some(2)) => sphere(Vec3::new(0.0, 1.5, 0.0), 0.7),
+        other => panic!("no shape of the scene is {other:?}"),
+    }
+    for light in hit["lights"].as_array().expect("lights") {
+        check_light(light, point, vec3(&hit["normal"]["after"]));
+    }
+}
+
+fn check_light(light: &Value, point: Vec3, normal: Vec3) {
+    if light["towards"].is_null() {
+        return;
+    }
+    let towards = vec3(&light["towards"]);
+    let number = |key: &str| light[key].as_f64().expect("a number");
+    assert!((normal.dot(towards) - number("cosine")).abs() < 1e-9);
+    let factors = number("spot") * number("attenuation");
+    assert!(near(vec3(&light["strength"]), vec3(&light["color"]) * factors), "{light:#}");
+    match light["kind"].as_str() {
+        Some("point") => {
+            let distance = number("distance");
+            assert!(near(point + towards * distance, Vec3::new(0.0, 4.0, 0.0)));
+            let expected = 1.0 / (0.9 + 0.05 * distance);
+            assert!((number("attenuation") - expected).abs() < 1e-12 && number("spot") == 1.0, "{light:#}");
+        }
+        Some("dir" | "directional") => assert!(near(towards, Vec3::Z) && light["distance"].is_null()),
+        Some("area") => {
+            let place = point + towards * number("distance");
+            assert!(place.distance(Vec3::new(3.0, 4.0, 5.0)) < 0.501, "{light:#}");
+        }
+        other => panic!("{other:?}"),
+    }
+    if number("cosine") > 0.0 {
+        let sum = (vec3(&light["diffuse"]) + vec3(&light["highlight"])) * vec3(&light["strength"]);
+        assert!(near(vec3(&light["unshadowed"]), sum), "{light:#}");
+    }
+    let added = vec3(&light["unshadowed"]) * vec3(&light["filter"]) / number("samples");
+    assert!(near(vec3(&light["adds"]), added), "{light:#}");
+    let mut through = Vec3::ONE;
+    for crossing in light["shadow"]["through"].as_array().into_iter().flatten() {
+        through *= vec3(&crossing["filter"]);
+        assert_eq!(crossing["shape"]["number"], 1, "only one ball is of glass");
+    }
+    match light["shadow"]["result"].as_str() {
+        Some("blocked") => {
+            assert_eq!(light["filter"], serde_json::json!([0.0, 0.0, 0.0]));
+            let by = light["shadow"]["by"]["number"].as_u64();
+            assert!(by == Some(0) || by == Some(2), "glass blocks nothing: {light:#}");
+        }
+        Some("not-asked" | "free" | "filtered") => assert!(near(vec3(&light["filter"]), through)),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn what_is_told_hangs_together() {
+    let folder = Folder::new();
+    let fading = ALL.replace("0 4 0 1 0 0", "0 4 0 .9 .05 0");
+    assert!(fading != ALL);
+    folder.put("all.ray", fading.as_bytes());
+    let mut kinds = std::collections::BTreeMap::<String, u32>::new();
+    for (x, y) in (0..9).flat_map(|y| (0..12).map(move |x| (x, y))) {
+        let told =
+            explained(&folder, &format!("all.ray {x} {y} --size 12x9 --light-samples 4 --recursion 3"));
+        let rays = told["rays"].as_array().expect("rays");
+        for ray in rays {
+            check_ray(rays, ray);
+            *kinds.entry(ray["kind"].as_str().expect("a word").to_owned()).or_default() += 1;
+            if let Some(entering) = ray["hit"]["entering"].as_bool() {
+                *kinds.entry(format!("entering {entering}")).or_default() += 1;
+            }
+        }
+    }
+    assert!(kinds.len() == 5 && kinds.values().all(|count| *count > 10), "{kinds:?}");
+}
+
+#[test]
+fn text_and_drawings_tell_the_same_as_the_data() {
+    let folder = Folder::new();
+    folder.put("all.ray", ALL.as_bytes());
+    // Into the glass ball, and the floor under the other ball.
+    for at in ["36 40", "50 61"] {
+        let line = format!("all.ray {at} --size 100x80 --light-samples 8");
+        let told = explained(&folder, &line);
+        let rays = told["rays"].as_array().expect("rays");
+        let of = |format: &str| folder.run(&format!("explain {line} --format {format}")).expect(0).text();
+        let (text, svg, dot) = (of("text"), of("svg"), of("dot"));
+        let count_of = |kind: &str| rays.iter().filter(|ray| ray["kind"] == kind).count();
+        for (kind, color) in [("reflected", "#1a8f3c"), ("refracted", "#d9730d"), ("eye", "#1f5fbf")] {
+            // A line in each of two views; the legend has one more.
+            let lines = svg.matches(&format!("stroke=\"{color}\" stroke-width=\"2\"")).count();
+            assert_eq!(lines, 2 * count_of(kind) + 1, "{at}: {kind}");
+        }
+        let asked = |result: &str| {
+            let lights = rays.iter().flat_map(|ray| ray["hit"]["lights"].as_array().into_iter().flatten());
+            lights.filter(|light| light["shadow"]["result"] == result).count()
+        };
+        assert_eq!(svg.matches("stroke=\"#c62828\"").count(), 2 * asked("blocked") + 1, "{at}");
+        for (id, ray) in rays.iter().enumerate() {
+            let kind = ray["kind"].as_str().expect("a word");
+            let contribution =
+                numbers(&ray["contribution"]).iter().map(|&x| format!("{}", General(x))).collect::<Vec<_>>();
+            let head = format!(
+                "ray {id}: {kind}, depth {}, contribution ({})",
+                ray["depth"],
+                contribution.join(" ")
+            );
+            assert!(text.contains(&head), "{head}\n{text}");
+            if let Some(parent) = ray["parent"].as_u64() {
+                assert!(dot.contains(&format!("  r{parent} -> r{id} [")), "{dot}");
+            }
+            let hit = &ray["hit"];
+            if hit.is_null() {
+                continue;
+            }
+            let shape = &hit["shape"];
+            let name = [&shape["kind"], &shape["place"]].map(|word| word.as_str().expect("a word"));
+            let meets = format!("meets {} {} {}", name[0], shape["number"], name[1]);
+            assert!(text.contains(&meets), "{meets}\n{text}");
+            assert!(
+                dot.contains(&format!("r{id} [label=\"ray {id}: {kind}\\n{} {}", name[0], shape["number"]))
+            );
+        }
+        let leaves = rays.iter().filter(|ray| ray["hit"]["entering"] == false).count();
+        assert_eq!(text.matches("leaves: normals are flipped").count(), leaves, "{text}");
+        // Edges to lights: dotted where nothing is added.
+        let mut dark = 0;
+        for hit in rays.iter().map(|ray| &ray["hit"]).filter(|hit| hit.is_object()) {
+            let lights = hit["lights"].as_array().expect("lights");
+            for light in 0..3_u64 {
+                let sum: f64 = lights
+                    .iter()
+                    .filter(|term| term["light"] == light)
+                    .flat_map(|term| numbers(&term["adds"]))
+                    .sum();
+                dark += usize::from(sum == 0.0);
+            }
+        }
+        let dotted = dot.lines().filter(|line| line.contains("l") && line.contains("[style=dotted]")).count();
+        let ended = dot.matches("shape=plaintext").count();
+        assert_eq!(dotted, dark + ended, "{dot}");
+        // What each light adds, and what stands before the area light.
+        let plain: Vec<&Value> =
+            rays.iter().flat_map(|ray| ray["hit"]["lights"].as_array().into_iter().flatten()).collect();
+        for light in
+            plain.iter().filter(|light| light["samples"] == 1 && light["cosine"].as_f64() > Some(0.0))
+        {
+            let adds: Vec<String> =
+                numbers(&light["adds"]).iter().map(|&x| format!("{}", General(x + 0.0))).collect();
+            assert!(text.contains(&format!("adds ({})", adds.join(" "))), "{adds:?}\n{text}");
+        }
+    }
+}
+
+/// In the half shadow of a lamp with a size some samples arrive and some do not.
+#[test]
+fn the_text_counts_what_reaches_the_point() {
+    let folder = Folder::new();
+    let soft = "#camera 0 3 6  0 -.5 -1  0 1 0  .4  #light_area 1 1 1  0 6 0  0 -1 0  1  1 0 0
+        #material 1 1 1  1 1 1  0 0 0  0 0 0  0 0 1 -1 !!  #shape_box 0  0 -.1 0  8 .2 8
+        #shape_sphere 0  0 1.2 0  .5";
+    folder.put("soft.ray", soft.as_bytes());
+    let mut found = 0;
+    for x in 0..40 {
+        let line = format!("soft.ray {x} 15 --size 40x30 --light-samples 16");
+        let told = explained(&folder, &line);
+        let lights = told["rays"][0]["hit"]["lights"].as_array().cloned().unwrap_or_default();
+        let count = |result: &str| lights.iter().filter(|light| light["shadow"]["result"] == result).count();
+        let (free, blocked) = (count("free"), count("blocked"));
+        if free > 0 && blocked > 0 {
+            let text = folder.run(&format!("explain {line}")).expect(0).text();
+            assert!(text.contains(&format!("{free} reach the point, 0 through")), "{text}");
+            assert!(text.contains(&format!("{blocked} blocked by sphere 1 soft.ray")), "{text}");
+            found += 1;
+        }
+    }
+    assert!(found >= 2, "only {found} pixels in half shadow");
+}
+
+#[test]
+fn visits_are_the_sums_of_what_rays_cost() {
+    let folder = Folder::new();
+    folder.put("all.ray", ALL.as_bytes());
+    let told = explained(&folder, "all.ray 36 40 --size 100x80 --visits --accel octree");
+    let (mut boxes, mut shapes) = (0, 0);
+    let mut add = |tests: &Value| {
+        boxes += tests["boxes"].as_u64().expect("a count");
+        shapes += tests["shapes"].as_u64().expect("a count");
+    };
+    for ray in told["rays"].as_array().expect("rays") {
+        add(&ray["tests"]);
+        ray["hit"]["lights"].as_array().into_iter().flatten().for_each(|light| add(&light["tests"]));
+    }
+    let visits = told["visits"].as_array().expect("visits");
+    let octree = visits.iter().find(|visit| visit["accelerator"] == "octree").expect("the octree");
+    assert_eq!(octree["all"], serde_json::json!({ "boxes": boxes, "shapes": shapes }));
+    assert_eq!(octree["eye"], told["rays"][0]["tests"]);
+    assert!(boxes > octree["eye"]["boxes"].as_u64().expect("a count"));
 }
 
 #[test]

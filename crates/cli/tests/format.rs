@@ -23,6 +23,26 @@ const TIDY: &str = "\
 ";
 
 #[test]
+fn the_dialect_may_be_said() {
+    let folder = Folder::new();
+    // Flags that are not closed leave open what belongs to what, and so does a file of two dialects at once.
+    folder.put("hmc.ray", b"#version HMCCS155FALL2002\n#Sphere -m red --   0 0 0 1\n#rayfile_end\n");
+    folder.put("open.ray", b"#version HMCCS155FALL2002\n#sphere -n ball  0 0 0  1\n#rayfile_end\n");
+    folder.put("both.ray", b"#joint_begin elbow\n#shader \"a\" \"b\"\n");
+    folder.run("format open.ray").expect(1).says("unclosed-flags");
+    folder.run("format both.ray").expect(1).says("dialect-unclear");
+    folder.run("format hmc.ray --dialect slides").expect(1).says("stays as it is");
+    folder.run("format hmc.ray --dialect hmc").expect(0);
+    let text = String::from_utf8_lossy(&folder.get("hmc.ray")).into_owned();
+    assert!(text.contains("#Sphere -m red -- 0 0 0 1\n"), "{text}");
+    // A camera of 40 degrees is a fault of a slides file, and none of a file of degrees.
+    folder.put("wide.ray", BALLS.replace("0 1 0 .5", "0 1 0 40").as_bytes());
+    assert!(folder.get("wide.ray") != BALLS.as_bytes());
+    folder.run("check wide.ray").expect(1);
+    folder.run("check wide.ray --dialect unisa").expect(0);
+}
+
+#[test]
 fn files_are_replaced_and_then_stay() {
     let folder = Folder::new();
     folder.put("a.ray", UNTIDY.as_bytes());

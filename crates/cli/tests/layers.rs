@@ -76,6 +76,21 @@ fn other_formats_get_a_picture_a_layer() {
     folder.run("render balls.ray - 20 15 --layers depth").expect(2).says("--format exr");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_picture_and_its_layers_are_stored_together_or_not_at_all() {
+    let folder = Folder::new();
+    folder.run("render balls.ray a.png 20 15 --layers depth,normal").expect(0);
+    let before = ["a.png", "a.depth.png", "a.normal.png"].map(|name| folder.get(name));
+    // The last layer goes to a device that is always full: nothing of the set changes.
+    std::fs::remove_file(folder.path("a.normal.png")).expect("it was there");
+    std::os::unix::fs::symlink("/dev/full", folder.path("a.normal.png")).expect("a link in its place");
+    let names = folder.names();
+    folder.run("render balls.ray a.png 24 18 --layers depth,normal").expect(1).says("a.normal.png");
+    assert_eq!([folder.get("a.png"), folder.get("a.depth.png")], before[..2]);
+    assert_eq!(folder.names(), names);
+}
+
 #[test]
 fn transparent_pictures_have_coverage_for_alpha() {
     let folder = Folder::new();
@@ -133,6 +148,20 @@ fn pictures_and_colours_lie_behind() {
     folder.run("render balls.ray on.ppm 40 30 --background image:back.ppm").expect(0);
     let on = picture(&folder, "on.ppm");
     assert_eq!((on.pixel(0, 0), on.pixel(39, 0)), (Some([1.0, 0.0, 0.0, 1.0]), Some([0.0, 0.0, 1.0, 1.0])));
+    // At a silhouette both show: a picture of the scene's own background changes nothing.
+    let flat: Vec<u8> = [0.1_f32, 0.2, 0.3].iter().flat_map(|x| x.to_le_bytes()).collect();
+    folder.put("flat.pfm", &[b"PF\n1 1\n-1.0\n", flat.as_slice()].concat());
+    folder.run("render balls.ray own.pfm 40 30 --aa grid=4").expect(0);
+    folder.run("render balls.ray flat-behind.pfm 40 30 --aa grid=4 --background image:flat.pfm").expect(0);
+    let [own, behind] = ["own.pfm", "flat-behind.pfm"].map(|name| picture(&folder, name));
+    assert!(own.samples().iter().zip(behind.samples()).all(|(a, b)| (a - b).abs() < 1e-5));
+    // A colour is seen in mirrors, too.
+    let mirror = "#camera 0 0 4 0 0 -1 0 1 0 .5  #light_dir 1 1 1 0 0 -1  #background 0 0 0
+        #material 0 0 0 0 0 0 1 1 1 0 0 0 1 0 1 -1 !!  #shape_box 0 0 0 0 9 9 1";
+    folder.put("mirror.ray", mirror.as_bytes());
+    folder.run("render mirror.ray seen.ppm 4 4 --background 0,1,0 --shadows off").expect(0);
+    let seen = picture(&folder, "seen.ppm").pixel(0, 0).expect("a pixel");
+    assert!(seen[1] == 1.0 && seen[0] < 1.0, "{seen:?}");
     // A part of it has the same part of the background.
     folder.run("render balls.ray part.ppm 40 30 --background image:back.ppm --crop 10,0,25,9").expect(0);
     assert_eq!(picture(&folder, "part.ppm"), on.crop(10, 0, 25, 9).expect("inside"));
@@ -152,6 +181,26 @@ fn boxes_are_drawn_over_the_picture() {
     let changed =
         (0..120 * 90).filter(|i| plain.pixel(i % 120, i / 120) != boxes.pixel(i % 120, i / 120)).count();
     assert!(changed > 100 && changed < 3000, "{changed}");
+    // The outermost level is the scene's own box; the accelerators' boxes lie within it, and are fewer a level.
+    let count_of = |more: &str| {
+        let scene = root().join("scenes/caffeine.ray");
+        for (name, overlay) in [("plain", ""), ("accel", "--overlay accel")] {
+            let more = if overlay.is_empty() { "" } else { more };
+            folder
+                .run(&format!("render {} {name}.ppm 120 90 --shadows off {overlay} {more}", scene.display()))
+                .expect(0);
+        }
+        let [plain, boxes] = ["plain.ppm", "accel.ppm"].map(|name| picture(&folder, name));
+        (0..120 * 90).filter(|i| plain.pixel(i % 120, i / 120) != boxes.pixel(i % 120, i / 120)).count()
+    };
+    let outermost = count_of("--overlay-levels 1");
+    for kind in ["bvh", "boxes", "octree", "bsp"] {
+        let all = count_of(&format!("--accel {kind}"));
+        assert!(all > outermost + 20 && all < 8000, "{kind}: {outermost} {all}");
+    }
+    assert_eq!(count_of("--accel brute"), outermost);
+    assert_eq!(count_of("--overlay-levels 0"), 0);
+    folder.run("render balls.ray a.ppm 40 30 --overlay-levels 1").expect(2).says("--overlay");
     // The left ball's box: its front face, of z = 1, spans x -1.7 to .3, seen from z = 4 with a half angle of .5.
     folder.run("render balls.ray a.ppm 40 30 --overlay bounds").expect(0);
     let a = picture(&folder, "a.ppm");

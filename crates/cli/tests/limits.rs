@@ -194,6 +194,26 @@ fn each_limit_says_what_it_is_and_can_be_raised() {
     ended.says("at most 600 pixels").says("--max-pixels");
 }
 
+/// What the files write out themselves is never refused, but what instances make of it.
+#[test]
+fn instances_multiply_to_so_many_groups_as_are_allowed() {
+    let folder = Folder::new();
+    let ten = |name: &str| format!("#ray_file {name}\n{}", "#ray_file_instance 0\n".repeat(10));
+    folder.put("a.ray", format!("{BALLS}{}", ten("b.ray")).as_bytes());
+    folder.put("b.ray", ten("c.ray").as_bytes());
+    folder.put("c.ray", b"#shape_sphere -1 0 0 0 1\n");
+    for command in ["info a.ray", "check a.ray", "render a.ray --size 4x3 -o a.png", "convert a.ray -"] {
+        let ended = folder.run(&format!("{command} --max-groups 50")).expect(1);
+        let told = format!("{}{}", ended.stderr, String::from_utf8_lossy(&ended.stdout));
+        assert!(
+            told.contains("multiply to more than") && told.contains("--max-groups N"),
+            "{command}: {told}"
+        );
+        folder.run(&format!("{command} --max-groups 200")).expect(0);
+        folder.run(command).expect(0);
+    }
+}
+
 /// Beyond the usual number of pixels, at one pixel's cost.
 #[test]
 fn a_part_of_a_huge_picture_is_no_huge_picture() {

@@ -26,6 +26,8 @@ use std::io;
 use std::path::Path;
 use std::path::PathBuf;
 
+use crate::bent;
+use crate::bent::Bend;
 use crate::error::GradeError;
 use crate::snapshot::Recorder;
 use crate::snapshot::Snapshot;
@@ -96,6 +98,7 @@ impl Case {
                 let textures = Repainted { files: &self.files, change };
                 self.making(&textures, &self.options).picture(|_| (), |_| ())
             }
+            Change::Bend(bend) => self.making(&self.files, &self.options).bent(bend),
             Change::Picture(change) => Ok(change(&self.truth)),
             Change::Speckles => Err("it depends on the picture that is judged".to_owned()),
         };
@@ -145,6 +148,22 @@ impl Making<'_> {
         change_scene: impl FnOnce(&mut Scene),
         change_resolved: impl FnOnce(&mut Resolved),
     ) -> Result<Image, String> {
+        let world = self.world(change_scene, change_resolved)?;
+        let rendering = dotray_render::render(&world, self.options, &Silent);
+        rendering.map(|rendering| rendering.image).map_err(|error| error.to_string())
+    }
+
+    fn bent(&self, bend: Bend) -> Result<Image, String> {
+        let mut materials = Vec::new();
+        let world = self.world(|_| (), |resolved| materials.clone_from(&resolved.materials))?;
+        bent::picture(&world, &materials, self.options, bend)
+    }
+
+    fn world(
+        &self,
+        change_scene: impl FnOnce(&mut Scene),
+        change_resolved: impl FnOnce(&mut Resolved),
+    ) -> Result<World, String> {
         let Loaded { scene, diagnostics, sources, .. } =
             load(self.scene, self.files, &LoadOptions::default());
         let text =
@@ -156,9 +175,7 @@ impl Making<'_> {
         change_resolved(&mut resolved);
         check_memory(&resolved, &self.prepare, Some(self.options), machine_memory())
             .map_err(|refused| refused.to_string())?;
-        let world = World::prepare(resolved, self.textures, &self.prepare).map_err(|faults| text(&faults))?;
-        let rendering = dotray_render::render(&world, self.options, &Silent);
-        rendering.map(|rendering| rendering.image).map_err(|error| error.to_string())
+        World::prepare(resolved, self.textures, &self.prepare).map_err(|faults| text(&faults))
     }
 }
 

@@ -12,6 +12,8 @@ pub mod error;
 
 pub mod settings;
 
+pub mod bent;
+
 pub mod variants;
 
 pub mod suite;

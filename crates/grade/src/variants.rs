@@ -5,6 +5,8 @@
 
 mod camera;
 
+mod glass;
+
 mod light;
 
 mod matrices;
@@ -19,6 +21,8 @@ use dotray_image::Image;
 use dotray_render::Options;
 use dotray_scene::Resolved;
 use dotray_scene::Scene;
+
+use crate::bent::Bend;
 
 /// One common fault.
 #[derive(Debug)]
@@ -42,6 +46,8 @@ pub enum Change {
     Options(fn(&mut Options)),
     /// Of every texture's picture.
     Texture(fn(&Image) -> Image),
+    /// Of where refracted rays go.
+    Bend(Bend),
     /// Of the picture.
     Picture(fn(&Image) -> Image),
     /// Each pixel is that of the truth or that of the scene in shadow, whichever the judged picture has.
@@ -62,6 +68,10 @@ const fn resolved(name: &'static str, change: fn(&mut Resolved, (u32, u32)), hin
 
 const fn options(name: &'static str, change: fn(&mut Options), hint: &'static str) -> Variant {
     Variant { name, hint, change: Change::Options(change) }
+}
+
+const fn bend(name: &'static str, change: Bend, hint: &'static str) -> Variant {
+    Variant { name, hint, change: Change::Bend(change) }
 }
 
 const fn texture(name: &'static str, change: fn(&Image) -> Image, hint: &'static str) -> Variant {
@@ -278,6 +288,23 @@ pub static VARIANTS: &[Variant] = &[
         "ratio-inverted",
         shade::ratio_inverted,
         "Light is bent the wrong way: eta is 1/ir on entering and ir on leaving, not the reverse.",
+    ),
+    bend(
+        "glass-normal",
+        glass::normal_not_turned,
+        "Rays do not get out of the glass: where a ray leaves (d.n > 0), the normal in Snell's law must be turned to \
+         its side.",
+    ),
+    bend(
+        "glass-ratio",
+        glass::ratio_not_turned,
+        "Light that leaves the glass is bent like light that enters: eta is 1/ir on entering, but ir on leaving.",
+    ),
+    bend(
+        "glass-leaving",
+        glass::leaving_not_seen,
+        "Nobody asks whether a ray enters the glass or leaves it: on leaving (d.n > 0) turn the normal, and take ir \
+         for eta.",
     ),
     resolved(
         "black-sky",

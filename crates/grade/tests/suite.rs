@@ -1,5 +1,7 @@
 //! The ready suite: its scenes have pictures, and every wrong variant is found by one of them.
 
+use dotray_grade::bent::Bend;
+use dotray_grade::bent::snell;
 use dotray_grade::case::Case;
 use dotray_grade::case::clamped;
 use dotray_grade::hint::hints;
@@ -93,6 +95,26 @@ fn lessons_do_not_need_what_comes_later() {
     }
 }
 
+/// The tracer of the glass variants differs from the renderer in the bending alone: bent rightly, its picture is the
+/// renderer's.
+#[test]
+fn glass_that_is_bent_rightly_is_the_truth() {
+    let right: Bend = |at| {
+        let (normal, eta) = if at.entering { (at.outward, 1.0 / at.index) } else { (-at.outward, at.index) };
+        snell(at.direction, normal, eta)
+    };
+    let suite = small_suite();
+    let mut compared = 0;
+    for (test, case) in cases(&suite) {
+        if let Ok(picture) = case.variant(&Change::Bend(right)) {
+            let figures = compare(&picture, &case.truth, 0.5 / 255.0).expect("the same size");
+            assert!(figures.pixels_over <= 5, "{}: {}", test.name, figures.pixels_over);
+            compared += 1;
+        }
+    }
+    assert!(compared >= 4, "{compared}");
+}
+
 type Pictures = Vec<(&'static Variant, Image)>;
 
 /// The lessons in which a picture loses points, and what is named there.
@@ -148,6 +170,7 @@ fn every_variant_is_named_in_some_lesson() {
             | Change::Resolved(_)
             | Change::Options(_)
             | Change::Texture(_)
+            | Change::Bend(_)
             | Change::Picture(_) => lessons(&suite, &cases, |_, telling| of_variant(telling)),
         };
         let first = lessons.iter().filter(|(_, names)| names.first() == Some(&variant.name)).count();

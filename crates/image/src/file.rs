@@ -20,18 +20,58 @@ use std::sync::atomic::Ordering;
 /// The error of the system, with the path in its text; what was there before is then still there, and nothing else is
 /// left behind.
 pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    replace_file(path, |file| file.write_all(bytes))
-        .map_err(|error| io::Error::new(error.kind(), format!("cannot write {}: {error}", path.display())))
+    write_files(&[(path, bytes)])
 }
 
-fn replace_file(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
+/// Writes several files, all of them or none: each goes whole to a file beside its place, as [`write_file`] says, and
+/// only when all are there do they take their names.
+///
+/// # Errors
+/// The error of the system, with the path in its text; no file has changed then, unless the system fails while names
+/// are being given.
+pub fn write_files(files: &[(&Path, &[u8])]) -> io::Result<()> {
+    let told = |path: &Path, error: io::Error| {
+        io::Error::new(error.kind(), format!("cannot write {}: {error}", path.display()))
+    };
+    let ready = |&(path, bytes): &(&Path, &[u8])| match prepare(path, |file| file.write_all(bytes)) {
+        Ok(ready) => Ok((path.to_path_buf(), ready)),
+        Err(error) => Err(told(path, error)),
+    };
+    let ready: Vec<(PathBuf, Option<Ready>)> = files.iter().map(ready).collect::<io::Result<_>>()?;
+    for (path, ready) in ready {
+        ready.map_or(Ok(()), Ready::take_name).map_err(|error| told(&path, error))?;
+    }
+    Ok(())
+}
+
+/// A file that is there whole but for its name; whoever drops it before removes it.
+struct Ready {
+    temporary: PathBuf,
+    target: PathBuf,
+}
+
+impl Ready {
+    fn take_name(self) -> io::Result<()> {
+        fs::rename(&self.temporary, &self.target)
+    }
+}
+
+impl Drop for Ready {
+    fn drop(&mut self) {
+        // Where it has taken its name there is nothing to remove, and nothing more can be done if this fails.
+        let _ = fs::remove_file(&self.temporary);
+    }
+}
+
+/// Writes the file beside its place; what is no regular file is written to at once.
+fn prepare(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Option<Ready>> {
     let target = final_target(path)?;
     let old = match fs::metadata(&target) {
         Ok(metadata) if metadata.is_dir() => {
             return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
         }
         Ok(metadata) if !metadata.is_file() => {
-            return write(&mut OpenOptions::new().write(true).open(&target)?);
+            return write(&mut OpenOptions::new().write(true).open(&target)?).map(|()| None);
         }
         Ok(metadata) if metadata.permissions().readonly() => {
             return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is write-protected"));
@@ -41,22 +81,16 @@ fn replace_file(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) ->
         Err(error) => return Err(error),
     };
     let (mut file, temporary) = create_beside(&target)?;
-    let written = write(&mut file).and_then(|()| {
-        file.flush()?;
-        if let Some(old) = &old {
-            // A file system without permissions must not cost the picture.
-            let _ = file.set_permissions(old.permissions());
-        }
-        // Without this the name could reach the disk before the bytes do.
-        file.sync_all()
-    });
-    drop(file);
-    let finished = written.and_then(|()| fs::rename(&temporary, &target));
-    if finished.is_err() {
-        // The first error counts; if this fails too, there is nothing more to be done.
-        let _ = fs::remove_file(&temporary);
+    let ready = Ready { temporary, target };
+    write(&mut file)?;
+    file.flush()?;
+    if let Some(old) = &old {
+        // A file system without permissions must not cost the picture.
+        let _ = file.set_permissions(old.permissions());
     }
-    finished
+    // Without this the name could reach the disk before the bytes do.
+    file.sync_all()?;
+    Ok(Some(ready))
 }
 
 /// Where a chain of symbolic links ends, even if nothing is there yet.
@@ -119,13 +153,27 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.bmp");
         write_file(&path, b"old").unwrap();
-        let failed = replace_file(&path, |file| {
+        let failed = prepare(&path, |file| {
             file.write_all(b"half of the ne")?;
             Err(io::Error::other("disk full"))
         });
-        assert_eq!(failed.unwrap_err().to_string(), "disk full");
+        assert_eq!(failed.err().unwrap().to_string(), "disk full");
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(names(folder.path()), ["a.bmp"]);
+    }
+
+    #[test]
+    fn of_several_files_all_are_written_or_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b, c] = ["a.png", "a.depth.png", "a.normal.png"].map(|name| folder.path().join(name));
+        write_files(&[(&a, b"1"), (&b, b"2")]).unwrap();
+        assert_eq!(names(folder.path()), ["a.depth.png", "a.png"]);
+        // The last one's place is taken by a folder: the others stay as they were.
+        fs::create_dir(&c).unwrap();
+        let message = write_files(&[(&a, b"3"), (&b, b"4"), (&c, b"5")]).unwrap_err().to_string();
+        assert!(message.contains("a.normal.png") && message.contains("folder"), "{message}");
+        assert_eq!((fs::read(&a).unwrap(), fs::read(&b).unwrap()), (b"1".to_vec(), b"2".to_vec()));
+        assert_eq!(names(folder.path()), ["a.depth.png", "a.normal.png", "a.png"]);
     }
 
     #[test]

@@ -65,6 +65,7 @@ pub use codec::{EncodeOptions, decode, encode};
 pub use error::ImageError;
 pub use exr_layers::{NamedChannel, encode_exr_layers};
 pub use file::write_file;
+pub use file::write_files;
 pub use format::Format;
 pub use image::{Channels, Image};
 pub use limits::Limits;

@@ -266,11 +266,11 @@ impl Baked {
             Shape::Cone(cone) => match similarity {
                 Some(scale) => {
                     let c = OrientedCone::from_object(cone, world_from_object, scale);
-                    self.cull_bar(culls, &Spine::along(c.base(), c.axis(), c.radius(), c.height()));
+                    self.cull_bar(culls, &Spine::along(c.base(), c.axis(), c.widest(), c.height()));
                     put(&mut self.cones, Form::Cone, c)
                 }
                 None => {
-                    self.cull_framed_bar(culls, shape, world_from_object, cone.center(), cone.radius());
+                    self.cull_framed_bar(culls, shape, world_from_object, cone.center(), cone.widest());
                     put(&mut self.framed_cones, Form::FramedCone, *cone)
                 }
             },
@@ -392,6 +392,9 @@ impl Lists {
             file.indexed_triangles.materials = Vec::new();
             file.tori.materials = Vec::new();
             file.open_sides.materials = Vec::new();
+            // The tree has become runs and transforms.
+            file.items = Vec::new();
+            file.groups = Vec::new();
         }
     }
 }

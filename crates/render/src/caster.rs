@@ -2,6 +2,7 @@
 
 use crate::bake::world_bounds;
 use crate::options::PrepareOptions;
+use crate::query::Crossing;
 use crate::query::Nearest;
 use crate::query::NearestBatch;
 use crate::query::NearestBuffers;
@@ -26,7 +27,7 @@ use dotray_scene::Resolved;
 use dotray_scene::model::SceneFile;
 use dotray_scene::resolved::Run;
 use dotray_scene::resolved::TreeEvent;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Baked shapes and the accelerator over them.
 ///
@@ -161,6 +162,17 @@ impl Caster {
         buffers.blockers.iter().map(|&blocker| blocker != UNBLOCKED).collect()
     }
 
+    /// Every surface that each ray crosses between its bounds, ray by ray and nearest first: a ray enters a sphere and
+    /// leaves it.
+    pub fn crossings(&self, queries: &Queries<'_>, together: bool) -> Vec<Crossing> {
+        let mut buffers = ShadowBuffers::default();
+        // To a shadow ray for which everything is see-through nothing is hidden.
+        let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| true, &mut buffers);
+        self.accelerator.walk_rays(self.level, queries, &mut batch, together);
+        batch.finish();
+        buffers.crossings
+    }
+
     /// The surface that `ray` met at `nearest`.
     pub fn surface(&self, ray: &Ray, nearest: &Nearest) -> WorldSurface {
         self.shapes.surface(nearest.position, ray, nearest.hit)
@@ -174,6 +186,11 @@ impl Caster {
     /// The box around all shapes; empty without any.
     pub fn bounds(&self) -> Aabb {
         self.accelerator.bounds()
+    }
+
+    /// The accelerator's boxes (or cells), level by level: the first `most` of them.
+    pub fn accelerator_cells(&self, most: usize) -> Vec<dotray_accel::Cell> {
+        self.accelerator.cells(most)
     }
 
     /// The accelerator's figures; this looks at every node.

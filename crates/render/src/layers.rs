@@ -6,22 +6,21 @@
 
 use crate::camera::Camera;
 use crate::error::RenderError;
-use crate::inspect::Branch;
-use crate::inspect::LightTerm;
-use crate::inspect::Meeting;
-use crate::inspect::RayNode;
-use crate::inspect::Shadow;
 use crate::observer::Observer;
 use crate::observer::Progress;
+use crate::options::Crop;
 use crate::options::Options;
 use crate::options::Shadows;
-use crate::query::Tests;
+use crate::record::EyeRecord;
+use crate::record::MetByEye;
+use crate::sampler::Block;
 use crate::threads::on_threads;
 use crate::trace::Tracer;
 use crate::world::World;
 use dotray_accel::simd::level;
 use dotray_geometry::Vec3;
 use rayon::prelude::*;
+use std::cmp::Reverse;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering;
 
@@ -129,11 +128,16 @@ impl Layer {
         }
     }
 
+    /// Whether it tells what rays cost.
+    const fn is_cost(self) -> bool {
+        matches!(self, Self::Rays | Self::BoxTests | Self::ShapeTests)
+    }
+
     /// Appends the layer's numbers of one pixel.
-    fn append(self, node: &RayNode, samples: &mut Vec<f32>) {
-        let met = node.meeting.as_ref();
+    fn append(self, eye: &EyeRecord, samples: &mut Vec<f32>) {
+        let met = eye.met.as_ref();
         let vector = |samples: &mut Vec<f32>, v: Vec3| samples.extend(v.to_array().map(|x| x as f32));
-        let of_point = |value: fn(&Meeting) -> Vec3| met.map_or(Vec3::ZERO, value);
+        let of_point = |value: fn(&MetByEye) -> Vec3| met.map_or(Vec3::ZERO, value);
         match self {
             Self::Depth => samples.push(met.map_or(f32::INFINITY, |met| met.nearest.hit.t as f32)),
             Self::Normal => vector(samples, of_point(|met| met.normal)),
@@ -146,55 +150,15 @@ impl Layer {
                 samples.extend(st.map(|x| x as f32));
             }
             Self::Object => vector(samples, of_point(|met| met.surface.in_object.point)),
-            Self::Shadow => vector(samples, met.map_or(Vec3::ONE, light_share)),
-            Self::Direct => vector(samples, met.map_or(node.color, Meeting::direct)),
-            Self::Reflected => vector(samples, of_point(|met| met.reflected.color())),
-            Self::Transmitted => vector(samples, of_point(|met| met.refracted.color())),
-            Self::Rays => samples.push(cost(node).rays as f32),
-            Self::BoxTests => samples.push(cost(node).tests.boxes as f32),
-            Self::ShapeTests => samples.push(cost(node).tests.shapes as f32),
+            Self::Shadow => vector(samples, eye.light_share()),
+            Self::Direct => vector(samples, eye.direct),
+            Self::Reflected => vector(samples, eye.reflected),
+            Self::Transmitted => vector(samples, eye.transmitted),
+            Self::Rays => samples.push(eye.rays as f32),
+            Self::BoxTests => samples.push(eye.tests.boxes as f32),
+            Self::ShapeTests => samples.push(eye.tests.shapes as f32),
         }
     }
-}
-
-/// The mean of S_i over the lights (and samples) that face the point; 1 where none does.
-fn light_share(met: &Meeting) -> Vec3 {
-    let facing = met.lights.iter().filter(|term| term.lit != Vec3::ZERO);
-    let (sum, count) = facing.fold((Vec3::ZERO, 0.0), |(sum, count), term| (sum + term.filter, count + 1.0));
-    if count > 0.0 { sum / count } else { Vec3::ONE }
-}
-
-/// What a ray and all that it led to cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Cost {
-    rays: u64,
-    tests: Tests,
-}
-
-fn cost(node: &RayNode) -> Cost {
-    let mut cost = Cost::default();
-    // A list, not recursion: the recursion limit is the user's.
-    let mut open = vec![node];
-    while let Some(node) = open.pop() {
-        cost.rays += 1;
-        let mut add = |tests: &Tests| {
-            cost.tests.boxes += tests.boxes;
-            cost.tests.shapes += tests.shapes;
-        };
-        add(&node.tests);
-        let Some(met) = &node.meeting else { continue };
-        let asked = |term: &&LightTerm| !matches!(term.shadow, Shadow::NotAsked);
-        for term in met.lights.iter().filter(asked) {
-            add(&term.tests);
-            cost.rays += 1;
-        }
-        for branch in [&met.reflected, &met.refracted] {
-            if let Branch::Traced(node) = branch {
-                open.push(node);
-            }
-        }
-    }
-    cost
 }
 
 /// A layer of a picture.
@@ -226,33 +190,51 @@ pub fn render_layers(
     let options = if geometric { &first_hits } else { options };
     let window = options.window();
     let (width, height) = (window.width as usize, window.height as usize);
-    let camera = Camera::new(&world.camera, options.width, options.height);
     let finished = AtomicU64::new(0);
     let total_pixels = width as u64 * height as u64;
-    let row = |y: u32| -> Option<Vec<Vec<f32>>> {
+    let bands = window.height.div_ceil(BAND);
+    let band = |number: u32| -> Option<Vec<Vec<f32>>> {
         if observer.cancelled() {
             return None;
         }
-        let mut tracer = Tracer::new(world, options, level());
-        let mut samples = vec![Vec::new(); wanted.len()];
-        let from_below = f64::from(options.height - 1 - (window.y + y)) + 0.5;
-        for x in window.x..window.x + window.width {
-            let node = tracer.inspect(camera.ray(f64::from(x) + 0.5, from_below))?;
-            for (layer, samples) in wanted.iter().zip(&mut samples) {
-                layer.append(&node, samples);
-            }
-        }
-        let before = finished.fetch_add(u64::from(window.width), Ordering::Relaxed);
-        let finished_pixels = before + u64::from(window.width);
+        let from = window.y + number * BAND;
+        let rows = Crop { y: from, height: BAND.min(window.y + window.height - from), ..window };
+        let samples = samples_of(world, options, wanted, rows);
+        let pixels = u64::from(rows.width) * u64::from(rows.height);
+        let finished_pixels = finished.fetch_add(pixels, Ordering::Relaxed) + pixels;
         observer.tile_finished(&Progress { finished_pixels, total_pixels });
         Some(samples)
     };
-    let run = || (0..window.height).into_par_iter().map(row).collect::<Option<Vec<_>>>();
-    let Some(rows) = on_threads(options.threads, run)? else { return Ok(None) };
+    let run = || (0..bands).into_par_iter().with_max_len(1).map(band).collect::<Option<Vec<_>>>();
+    let Some(bands) = on_threads(options.threads, run)? else { return Ok(None) };
     let picture = |(index, &layer): (usize, &Layer)| {
         let mut samples = Vec::with_capacity(width * height * layer.channels().len());
-        rows.iter().for_each(|row| samples.extend_from_slice(&row[index]));
+        bands.iter().for_each(|band| samples.extend_from_slice(&band[index]));
         LayerPicture { layer, width, height, samples }
     };
     Ok(Some(wanted.iter().enumerate().map(picture).collect()))
+}
+
+/// The rows that are traced together: as many as a brick of pixels has.
+const BAND: u32 = 4;
+
+/// The layers' numbers of some rows, the upper one first.
+fn samples_of(world: &World, options: &Options, wanted: &[Layer], rows: Crop) -> Vec<Vec<f32>> {
+    let camera = Camera::new(&world.camera, options.width, options.height);
+    let alone = wanted.iter().any(|layer| layer.is_cost());
+    let mut tracer = Tracer::new(world, options, level());
+    let below = options.height - rows.y - rows.height;
+    // Neighbouring rays travel together, and are put back into rows afterwards.
+    let pixels = Block { x: rows.x, y: below, width: rows.width, height: rows.height }.pixels();
+    let rays: Vec<_> =
+        pixels.iter().map(|&(i, j)| camera.ray(f64::from(i) + 0.5, f64::from(j) + 0.5)).collect();
+    let records = tracer.record(&rays, alone);
+    let mut places: Vec<_> = (0..pixels.len()).collect();
+    places.sort_unstable_by_key(|&place| (Reverse(pixels[place].1), pixels[place].0));
+    let numbers = |layer: &Layer| {
+        let mut samples = Vec::with_capacity(places.len() * layer.channels().len());
+        places.iter().for_each(|&place| layer.append(&records[place], &mut samples));
+        samples
+    };
+    wanted.iter().map(numbers).collect()
 }

@@ -7,7 +7,7 @@
 
 pub mod error;
 
-mod threads;
+pub mod threads;
 
 pub mod options;
 
@@ -47,6 +47,8 @@ pub mod shade;
 
 pub mod inspect;
 
+pub mod record;
+
 pub mod trace;
 
 pub mod sampler;
@@ -75,8 +77,9 @@ pub use layers::{Layer, LayerPicture, render_layers};
 pub use observer::{Observer, Progress, Silent};
 pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};
 pub use picture::Picture;
-pub use query::Nearest;
+pub use query::{Crossing, Nearest};
 pub use stats::{MemoryPart, Stats};
+pub use threads::on_threads;
 pub use tile::{Tile, TilePixels};
 pub use tile_file::TileFile;
 pub use tiles::{Rendering, develop, develop_part, render, render_missing};

@@ -94,6 +94,16 @@ impl Shapes {
         self.baked.materials[position as usize]
     }
 
+    /// The colour of the shape itself, beside its material's; `None` in scenes without such colours.
+    #[inline]
+    pub fn color(&self, position: u32) -> Option<Vec3> {
+        let run = self.run(position);
+        let (list, first) = run.colors?;
+        let index = first + (self.number(position) - run.first_shape);
+        let colors = &self.lists.files[run.file.0 as usize].colors[list as usize].colors;
+        Some(Vec3::from_array(colors[index as usize].map(f64::from)))
+    }
+
     /// The run that the shape stands in.
     #[inline]
     pub fn run(&self, position: u32) -> &Run {

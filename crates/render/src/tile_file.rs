@@ -66,7 +66,8 @@ impl TileFile {
         Ok(Self { file: open(path)?, head: head_bytes(fingerprint), end: 0 })
     }
 
-    /// Reads what is there: shows each whole tile of `tiles` that has so many channels. Takes the memory of one.
+    /// Reads what is there: shows each whole tile of `tiles` that has so many channels. Takes no more memory than a
+    /// tile.
     ///
     /// # Errors
     /// What the system says.

@@ -16,7 +16,7 @@ use dotray_image::Image;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::PoisonError;
-use std::time::Instant;
+use web_time::Instant;
 
 /// A picture and what it cost.
 #[derive(Debug)]

@@ -5,25 +5,22 @@
 //! all secondary rays go on together. Sums are taken in the order of the formula, so the result does not depend on
 //! which rays share a stream.
 
+mod lighting;
+
 use crate::inspect::End;
 use crate::inspect::Inspector;
-use crate::inspect::LightTerm;
 use crate::inspect::RayKind;
 use crate::inspect::RayNode;
-use crate::inspect::Shadow;
-use crate::light::Incident;
-use crate::light::Light;
 use crate::observer::Observer;
 use crate::observer::Silent;
 use crate::options::Options;
-use crate::options::Shadows;
-use crate::query::Crossing;
 use crate::query::NearestBatch;
 use crate::query::NearestBuffers;
-use crate::query::ShadowBatch;
-use crate::query::ShadowBuffers;
 use crate::query::Tests;
-use crate::query::UNBLOCKED;
+use crate::record::EyeRecord;
+use crate::record::MetByEye;
+use crate::record::Part;
+use crate::record::Recorder;
 use crate::shade::ShadePoint;
 use crate::stats::Stats;
 use crate::world::World;
@@ -33,7 +30,6 @@ use dotray_accel::Queries;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
 use dotray_geometry::Vec4;
-use dotray_scene::model::Tint;
 
 /// The rays of one stream: enough to keep SIMD lanes and caches busy, few enough that a deep recursion, which holds
 /// one stream a level, stays small.
@@ -49,9 +45,11 @@ pub struct Tracer<'a> {
     /// The streams under way, by depth: kept, so that a bounce allocates nothing.
     streams: Vec<Stream<'a>>,
     nearest: NearestBuffers,
-    shadows: ShadowStream,
+    shadows: lighting::ShadowStream,
     /// Who wants to know everything of the one ray that is traced.
     inspector: Option<Inspector>,
+    /// Who wants to know something of every eye ray.
+    recorder: Option<Recorder>,
     /// Who may stop it.
     observer: &'a dyn Observer,
     stopped: bool,
@@ -76,28 +74,6 @@ struct Met<'a> {
     point: ShadePoint<'a>,
 }
 
-/// The shadow rays to one lamp, side by side.
-#[derive(Default)]
-struct ShadowStream {
-    rays: Vec<Ray>,
-    ends: Vec<f64>,
-    /// Whose each is: the place in the stream, and what the lamp gives where nothing lies between.
-    waiting: Vec<(usize, Vec3)>,
-    filters: Vec<Vec3>,
-    buffers: ShadowBuffers,
-}
-
-/// One point of a light that stands for it.
-#[derive(Clone, Copy)]
-struct LightSample<'a> {
-    light: &'a Light,
-    tint: &'a Tint,
-    /// The light's number.
-    number: u32,
-    sample: u32,
-    samples: u32,
-}
-
 /// The two kinds of secondary rays.
 #[derive(Clone, Copy)]
 enum Secondary {
@@ -112,6 +88,13 @@ impl Secondary {
             Self::Refracted => RayKind::Refracted,
         }
     }
+
+    fn part(self) -> Part {
+        match self {
+            Self::Reflected => Part::Reflected,
+            Self::Refracted => Part::Transmitted,
+        }
+    }
 }
 
 impl<'a> Tracer<'a> {
@@ -124,8 +107,9 @@ impl<'a> Tracer<'a> {
             stats: Stats::default(),
             streams: Vec::new(),
             nearest: NearestBuffers::default(),
-            shadows: ShadowStream::default(),
+            shadows: lighting::ShadowStream::default(),
             inspector: None,
+            recorder: None,
             observer: &Silent,
             stopped: false,
         }
@@ -175,14 +159,16 @@ impl<'a> Tracer<'a> {
     /// Traces the eye rays stream by stream and shows each.
     fn eye_streams(&mut self, eye_rays: &[Ray], mut show: impl FnMut(&Stream<'a>)) {
         self.stats.eye_rays += eye_rays.len() as u64;
-        for rays in eye_rays.chunks(STREAM) {
+        for (number, rays) in eye_rays.chunks(STREAM).enumerate() {
             if self.stops() {
                 return;
             }
             let mut stream = self.take_stream();
             stream.rays.extend_from_slice(rays);
             stream.contributions.resize(rays.len(), Vec3::ONE);
+            self.listen(|recorder| recorder.open_eyes(number * STREAM, rays.len()));
             self.trace(&mut stream, 0);
+            self.listen(Recorder::close);
             show(&stream);
             self.streams.push(stream);
         }
@@ -197,6 +183,26 @@ impl<'a> Tracer<'a> {
         let mut inspector = self.inspector.take()?;
         inspector.finish(color);
         inspector.root
+    }
+
+    /// What layers want to know of each eye ray; with `alone`, the tests that each ray costs by itself.
+    pub fn record(&mut self, eye_rays: &[Ray], alone: bool) -> Vec<EyeRecord> {
+        self.recorder = Some(Recorder::new(eye_rays.len(), alone));
+        self.eye_streams(eye_rays, |_| {});
+        self.recorder.take().map_or_else(Vec::new, |recorder| recorder.records)
+    }
+
+    /// Tells the recorder, if there is one.
+    #[inline]
+    fn listen(&mut self, tell: impl FnOnce(&mut Recorder)) {
+        if let Some(recorder) = &mut self.recorder {
+            tell(recorder);
+        }
+    }
+
+    /// Whether rays may share their walks: not where somebody wants to know what each costs.
+    fn together(&self) -> bool {
+        self.recorder.as_ref().is_none_or(|recorder| !recorder.alone)
     }
 
     /// An empty stream, its memory taken from one that has done its work.
@@ -218,14 +224,18 @@ impl<'a> Tracer<'a> {
         if self.stops() {
             return;
         }
-        self.meet(stream, depth == 0);
+        let together = depth == 0 && self.together();
+        self.meet(stream, together);
+        self.record_meetings(stream);
         for Met { index, point } in &stream.met {
-            stream.colors[*index] = point.own_light(world.ambient) + ambient_of_lights(world, point);
+            stream.colors[*index] =
+                point.own_light(world.ambient) + lighting::ambient_of_lights(world, point);
             if let Some(inspector) = &mut self.inspector {
                 inspector.own_light(stream.colors[*index]);
             }
         }
         self.add_lights(&stream.met, &mut stream.colors);
+        self.listen(|recorder| recorder.direct(&stream.colors));
         if depth < self.options.recursion && !stream.met.is_empty() {
             self.add_secondary(stream, Secondary::Reflected, depth + 1);
             self.add_secondary(stream, Secondary::Refracted, depth + 1);
@@ -258,91 +268,20 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Adds every light's term to every point, light after light.
-    fn add_lights(&mut self, met: &[Met<'_>], colors: &mut [Vec3]) {
-        for (number, (light, tint)) in (0..).zip(self.world.lights.iter().zip(&self.world.tints)) {
-            let samples = light.samples(self.options.light_samples);
-            let first = LightSample { light, tint, number, sample: 0, samples };
-            if samples == 1 {
-                self.add_light_sample(met, first, colors);
-                continue;
-            }
-            let mut sums = vec![Vec3::ZERO; colors.len()];
-            for sample in 0..samples {
-                self.add_light_sample(met, LightSample { sample, ..first }, &mut sums);
-            }
-            for Met { index, .. } in met {
-                colors[*index] += sums[*index] / f64::from(samples);
-            }
-        }
-    }
-
-    /// Adds the term of one point lamp to every point that it reaches.
-    fn add_light_sample(&mut self, met: &[Met<'_>], from: LightSample<'_>, sums: &mut [Vec3]) {
-        if self.stops() {
+    /// Tells the recorder what each ray cost, and of eye rays what they met.
+    fn record_meetings(&mut self, stream: &Stream<'_>) {
+        let Some(recorder) = &mut self.recorder else { return };
+        recorder.cost(0..stream.rays.len(), &self.nearest.tests);
+        if !recorder.at_eye() {
             return;
         }
-        let shadows = &mut self.shadows;
-        shadows.rays.clear();
-        shadows.ends.clear();
-        shadows.waiting.clear();
-        for Met { index, point } in met {
-            let incident = from.light.incident(point.point, from.sample, from.samples);
-            if let Some(inspector) = &mut self.inspector {
-                inspector.light(light_term(point, from, incident.as_ref()));
-            }
-            let Some(incident) = incident else { continue };
-            let lit = point.lit(&incident, from.tint);
-            // Where the lamp adds nothing, nobody asks what lies between.
-            if lit != Vec3::ZERO {
-                shadows.rays.push(Ray::new(point.point, incident.towards));
-                shadows.ends.push(incident.distance - self.world.ray_eps);
-                shadows.waiting.push((*index, lit));
-            }
-        }
-        self.find_filters();
-        for (&(index, lit), &filter) in self.shadows.waiting.iter().zip(&self.shadows.filters) {
-            sums[index] += lit * filter;
-        }
-    }
-
-    /// S_i of each shadow ray.
-    fn find_filters(&mut self) {
-        let world = self.world;
-        let ShadowStream { rays, ends, filters, buffers, .. } = &mut self.shadows;
-        filters.clear();
-        filters.resize(rays.len(), Vec3::ONE);
-        let all_opaque = match self.options.shadows {
-            Shadows::Off => return,
-            Shadows::Opaque => true,
-            Shadows::Filtered => false,
-        };
-        self.stats.shadow_rays += rays.len() as u64;
-        let transmission = |material: u32| world.materials[material as usize].shadow;
-        let see_through = |material| !all_opaque && transmission(material) != Vec3::ZERO;
-        let t_min = [world.ray_eps];
-        let queries = Queries { rays, t_min: &t_min, t_max: ends };
-        let mut batch = ShadowBatch::new(self.level, &world.caster.shapes, queries, see_through, buffers);
-        world.caster.accelerator.walk_together(self.level, &queries, &mut batch);
-        batch.finish();
-        count(&mut self.stats, &buffers.tests);
-        for crossing in &buffers.crossings {
-            filters[crossing.ray as usize] *= transmission(world.caster.shapes.material(crossing.position));
-        }
-        for (filter, &blocker) in filters.iter_mut().zip(&buffers.blockers) {
-            if blocker != UNBLOCKED {
-                *filter = Vec3::ZERO;
-            }
-        }
-        if let (Some(inspector), [filter]) = (&mut self.inspector, &filters[..]) {
-            let shadow = match buffers.blockers[0] {
-                UNBLOCKED => {
-                    let through = |c: &Crossing| transmission(world.caster.shapes.material(c.position));
-                    Shadow::Crossed(buffers.crossings.iter().map(|c| (*c, through(c))).collect())
-                }
-                position => Shadow::Blocked { position, number: world.caster.shapes.number(position) },
-            };
-            inspector.shadow(shadow, *filter, buffers.tests[0]);
+        let shapes = &self.world.caster.shapes;
+        for Met { index, point } in &stream.met {
+            let Some(nearest) = self.nearest.found[*index] else { continue };
+            let surface = shapes.surface(nearest.position, &stream.rays[*index], nearest.hit);
+            let material = shapes.material(nearest.position);
+            let met = MetByEye { nearest, surface, material, normal: point.normal };
+            recorder.eye(*index, |record| record.met = Some(met));
         }
     }
 
@@ -376,9 +315,12 @@ impl<'a> Tracer<'a> {
             Secondary::Refracted => self.stats.refracted_rays += next.rays.len() as u64,
         }
         if !next.rays.is_empty() {
+            self.listen(|recorder| recorder.open(next.senders.iter().map(|(sender, _)| *sender)));
             self.trace(&mut next, depth);
+            self.listen(Recorder::close);
             for (&(sender, weight), &color) in next.senders.iter().zip(&next.colors) {
                 stream.colors[sender] += weight * color;
+                self.listen(|recorder| recorder.adds(sender, kind.part(), weight * color));
                 if let Some(inspector) = &mut self.inspector {
                     inspector.finish(color);
                 }
@@ -412,31 +354,6 @@ impl<'a> Tracer<'a> {
         };
         ray.map(|ray| (ray, product)).ok_or(End::TotalReflection)
     }
-}
-
-/// The term of one light, its shadow not asked for yet.
-fn light_term(point: &ShadePoint<'_>, from: LightSample<'_>, incident: Option<&Incident>) -> LightTerm {
-    let cosine = incident.map_or(0.0, |incident| point.normal.dot(incident.towards));
-    LightTerm {
-        light: from.number,
-        sample: from.sample,
-        samples: from.samples,
-        incident: incident.copied(),
-        cosine,
-        diffuse: point.diffuse(cosine.max(0.0)),
-        highlight: incident.map_or(Vec3::ZERO, |incident| point.highlight(incident.towards)),
-        lit: incident.map_or(Vec3::ZERO, |incident| point.lit(incident, from.tint)),
-        shadow: Shadow::NotAsked,
-        filter: Vec3::ONE,
-        tests: Tests::default(),
-    }
-}
-
-/// What the lights' own ambient colours add, whatever stands between; only one dialect has such lights.
-fn ambient_of_lights(world: &World, point: &ShadePoint<'_>) -> Vec3 {
-    let lights = world.ambient_lights.iter();
-    let incidents = lights.filter_map(|(light, color)| Some((light.incident(point.point, 0, 1)?, color)));
-    incidents.fold(Vec3::ZERO, |sum, (incident, color)| sum + point.ambient(*color * incident.strength))
 }
 
 fn count(stats: &mut Stats, tests: &[Tests]) {

@@ -22,7 +22,7 @@ use dotray_scene::textures::Hints;
 use dotray_scene::textures::not_found;
 use dotray_scene::textures::unreadable;
 use std::io::ErrorKind;
-use std::time::Instant;
+use web_time::Instant;
 
 /// A scene ready for tracing.
 #[derive(Debug)]
@@ -118,11 +118,6 @@ impl World {
         Self::build_after(resolved, Textures { textures, seconds: 0.0 }, options, refit.then_some(caster))
     }
 
-    /// Looks at the scene with another camera.
-    pub fn set_camera(&mut self, camera: model::Camera) {
-        self.camera = camera;
-    }
-
     fn build_after(
         resolved: Resolved,
         textures: Textures,
@@ -138,37 +133,69 @@ impl World {
         let mut resolved = resolved;
         let default_material = resolved.default_material();
         let materials = std::mem::take(&mut resolved.materials);
-        let lights: Vec<Light> = resolved.lights.iter().map(Light::new).collect();
-        // Whoever adds a light to a resolved scene need not know of tints.
-        let mut tints = std::mem::take(&mut resolved.tints);
-        tints.resize(resolved.lights.len(), Tint::PLAIN);
-        let with_ambient = lights.iter().zip(&tints).filter(|(_, tint)| tint.ambient != Vec3::ZERO);
-        let ambient_lights = with_ambient.map(|(light, tint)| (*light, tint.ambient)).collect();
+        let (lights, tints) = (std::mem::take(&mut resolved.lights), std::mem::take(&mut resolved.tints));
         let secondary_background = resolved.secondary_background;
         let (camera, background, ambient) = (resolved.camera, resolved.background, resolved.ambient);
         let caster = Caster::with_default(resolved, default_material, options, former);
         seconds.extend_from_slice(caster.seconds());
         let bounds = caster.bounds();
         let size = if bounds.is_empty() { 1.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
-        Ok(Self {
+        let mut world = Self {
             camera,
             background,
             secondary_background,
             ambient,
-            lights,
-            tints,
-            ambient_lights,
+            lights: Vec::new(),
+            tints: Vec::new(),
+            ambient_lights: Vec::new(),
             materials,
             textures,
             caster,
             ray_eps: RELATIVE_RAY_EPS * size,
             seconds,
-        })
+        };
+        world.set_lights(&lights, tints);
+        Ok(world)
+    }
+
+    /// Puts the lights, materials, background and ambient light of another resolution of the same scene in place of its
+    /// own; the shapes stay, so this costs as much as there are lights and materials. Materials must be as many and
+    /// name the same textures as before; otherwise nothing changes.
+    pub fn restyle(&mut self, style: &Resolved) {
+        let same_texture = |(a, b): (&ResolvedMaterial, &ResolvedMaterial)| a.texture == b.texture;
+        let fits = self.materials.len() == style.materials.len();
+        if !fits || !self.materials.iter().zip(&style.materials).all(same_texture) {
+            return;
+        }
+        self.materials.clone_from(&style.materials);
+        (self.background, self.secondary_background) = (style.background, style.secondary_background);
+        self.ambient = style.ambient;
+        self.set_lights(&style.lights, style.tints.clone());
+    }
+
+    fn set_lights(&mut self, lights: &[model::Light], mut tints: Vec<Tint>) {
+        // Whoever adds a light to a resolved scene need not know of tints.
+        tints.resize(lights.len(), Tint::PLAIN);
+        self.lights = lights.iter().map(Light::new).collect();
+        let with_ambient = self.lights.iter().zip(&tints).filter(|(_, tint)| tint.ambient != Vec3::ZERO);
+        self.ambient_lights = with_ambient.map(|(light, tint)| (*light, tint.ambient)).collect();
+        self.tints = tints;
     }
 
     /// The camera, after defaults.
     pub fn camera(&self) -> &model::Camera {
         &self.camera
+    }
+
+    /// The same scene seen by another camera: nothing is built anew.
+    pub fn set_camera(&mut self, camera: model::Camera) {
+        self.camera = camera;
+    }
+
+    /// The same shapes under other light, as a scene in the slides' own dialect has it: nothing is built anew.
+    pub fn set_light(&mut self, background: Vec3, ambient: Vec3, lights: &[model::Light]) {
+        (self.background, self.secondary_background, self.ambient) = (background, background, ambient);
+        self.set_lights(lights, Vec::new());
     }
 
     /// The lights, by number.

@@ -1,6 +1,7 @@
 //! A scene of one dialect in the words of another, with all that they cannot say.
 
 mod carry;
+mod hmc;
 mod inline;
 
 use crate::diagnostic::Diagnostic;
@@ -24,9 +25,6 @@ pub struct Converted {
 /// Why a scene cannot be converted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConvertError {
-    /// Nothing writes this dialect.
-    #[error("scenes are written as `slides`, `uva` or `jhu`, not as `{0}`")]
-    NotWritten(Dialect),
     /// The tree of files cannot be walked.
     #[error(transparent)]
     Walk(#[from] WalkError),
@@ -48,10 +46,6 @@ pub fn convert(
     to: Dialect,
     texture: &dyn Fn(&SceneFile, &str) -> String,
 ) -> Result<Converted, ConvertError> {
-    match to {
-        Dialect::Slides | Dialect::Uva | Dialect::Jhu => {}
-        Dialect::Hmc | Dialect::Unisa => return Err(ConvertError::NotWritten(to)),
-    }
     let file = inline::inline(&scene.files, texture)?;
     let mut lost = Vec::new();
     let file = carry::carry(&scene.files, file, to, &mut lost);

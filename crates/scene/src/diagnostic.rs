@@ -137,6 +137,11 @@ impl Sink {
         self.errors > self.max_errors
     }
 
+    /// Whether nothing came at all.
+    pub fn is_silent(&self) -> bool {
+        self.errors == 0 && self.warnings.is_empty()
+    }
+
     /// How many errors came.
     pub fn errors(&self) -> usize {
         self.errors

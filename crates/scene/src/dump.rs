@@ -176,7 +176,8 @@ impl fmt::Display for Line<'_> {
             }
             Shape::Cone(cone) => {
                 let [radius, height] = [cone.radius(), cone.height()].map(General);
-                write!(f, "CONE: C({}) R={radius} H={height}", point(cone.center()))
+                write!(f, "CONE: C({}) R={radius} H={height}", point(cone.center()))?;
+                if cone.top() > 0.0 { write!(f, " TOP={}", General(cone.top())) } else { Ok(()) }
             }
             Shape::Triangle(triangle) => triangle_line(triangle, f),
             Shape::Torus(torus) => {

@@ -37,9 +37,10 @@ pub enum FormatError {
 
 /// Faults of a file that leave open what belongs to what: such a file cannot be laid out.
 pub fn is_structural(code: &str) -> bool {
-    const STRUCTURAL: [&str; 13] = [
+    const STRUCTURAL: [&str; 15] = [
         "argument-count",
         "cannot-read",
+        "dialect-unclear",
         "file-too-large",
         "not-a-number",
         "not-a-scene",
@@ -47,6 +48,7 @@ pub fn is_structural(code: &str) -> bool {
         "stray-group-end",
         "stray-text",
         "too-many-errors",
+        "unclosed-flags",
         "unclosed-group",
         "unknown-directive",
         "unterminated",

@@ -27,6 +27,8 @@ pub mod model;
 
 pub mod shapes;
 
+pub mod colors;
+
 pub mod lex;
 
 pub mod lookalike;

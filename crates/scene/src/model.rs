@@ -145,6 +145,24 @@ pub struct Material {
     pub weights: Option<Weights>,
 }
 
+impl Default for Material {
+    /// Material -1.
+    fn default() -> Self {
+        Self {
+            ambient: Color::splat(0.2),
+            diffuse: Color::splat(0.8),
+            specular: Color::splat(0.8),
+            emissive: Color::ZERO,
+            k_specular: 1.0,
+            k_transmission: 0.0,
+            index_of_refraction: 1.0,
+            texture: None,
+            text: String::new(),
+            weights: None,
+        }
+    }
+}
+
 /// `#vertex`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
@@ -192,6 +210,18 @@ impl<T> Default for ShapeList<T> {
     fn default() -> Self {
         Self { shapes: Vec::new(), materials: Vec::new(), starts: PackedStarts::default() }
     }
+}
+
+/// A colour for each of consecutive shapes, for scenes that come from arrays: it multiplies the ambient and the diffuse
+/// colour of the shape's material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeColors {
+    /// Which list.
+    pub kind: ShapeKind,
+    /// The first entry that has a colour here.
+    pub first: u32,
+    /// The colours, entry by entry.
+    pub colors: Vec<[f32; 3]>,
 }
 
 /// Something that has a place.
@@ -278,6 +308,9 @@ pub struct SceneFile {
     pub tori: ShapeList<Torus>,
     /// `#cylinder` and `#cone` without `-c`
     pub open_sides: ShapeList<OpenSide>,
+    /// Colours of shapes beside their materials, by kind and then by entry, no two for the same shape. No text has
+    /// them: see [`crate::colors`].
+    pub colors: Vec<ShapeColors>,
 }
 
 /// A scene: the file asked for and all that it includes.

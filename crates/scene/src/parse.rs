@@ -5,6 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used)]
 
+mod ahead;
 mod arguments;
 mod camera;
 mod count;
@@ -72,8 +73,8 @@ impl Default for Limits {
 /// The number of an include's file until the loader has found it.
 pub(crate) const NOT_LOADED: FileId = FileId(u32::MAX);
 
-/// Reads one file. Faults go to `sink`; what could be read comes back all the same. Included files are named, not
-/// read.
+/// Reads one file, on as many threads as the pool has that this is called in: that changes the time and nothing else.
+/// Faults go to `sink`; what could be read comes back all the same. Included files are named, not read.
 pub(crate) fn parse(
     path: PathBuf,
     bytes: &[u8],
@@ -89,6 +90,7 @@ pub(crate) fn parse(
     }
     let before = sink.mark();
     let mut parser = Parser::new(path, bytes, file, dialect, limits, sink);
+    parser.ahead = ahead::Ahead::new(rayon::current_num_threads(), dialect);
     parser.run();
     if !parser.stopped {
         parser.finish();
@@ -145,6 +147,8 @@ struct Seen {
     textures: usize,
     materials: usize,
     vertices: usize,
+    /// Whether it has been said that the colours of vertices have no effect.
+    vertex_colors: bool,
     includes: usize,
 }
 
@@ -177,6 +181,7 @@ struct Parser<'a> {
     affine: jhu::Affines,
     named: hmc::Named,
     shape_count: u32,
+    ahead: ahead::Ahead,
     /// Whether any directive of the language, or a word near to one, was seen.
     recognized: bool,
     /// Whether reading stopped before the end, so that nothing can be said about what is missing.
@@ -212,6 +217,7 @@ impl<'a> Parser<'a> {
             affine: jhu::Affines::default(),
             named: hmc::Named::default(),
             shape_count: 0,
+            ahead: ahead::Ahead::new(1, dialect),
             recognized: false,
             stopped: false,
         }
@@ -221,7 +227,11 @@ impl<'a> Parser<'a> {
         while !self.stopped {
             match self.lexer.skip_blank().map(|()| self.lexer.peek()) {
                 Ok(None) => return,
-                Ok(Some(b'#')) => self.directive(),
+                Ok(Some(b'#')) => {
+                    if !self.read_ahead() {
+                        self.directive();
+                    }
+                }
                 Ok(Some(_)) => self.stray_text(),
                 Err(fault) => self.unterminated(fault),
             }
@@ -237,6 +247,7 @@ impl<'a> Parser<'a> {
         self.lexer.go_to(after_word);
         let Some(spec) = directive::find_in(self.dialect, word) else { return self.odd_word(word, start) };
         self.recognized = true;
+        self.ahead.count(spec.directive);
         self.arguments(spec, start);
     }
 

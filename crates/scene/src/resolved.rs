@@ -69,6 +69,8 @@ pub struct Run {
     pub material_base: u32,
     /// The scene-wide number of the first shape: file order, instances expanded. Ties go to the lower number.
     pub first_shape: u32,
+    /// The number of the list in [`SceneFile::colors`] that colours the shapes, and the place there of the first one.
+    pub colors: Option<(u32, u32)>,
 }
 
 /// A step of the scene's tree with instances expanded, in file order.

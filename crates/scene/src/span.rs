@@ -41,6 +41,14 @@ impl PackedStarts {
         self.offsets.push(u32::try_from(start.saturating_sub(base)).unwrap_or(u32::MAX));
     }
 
+    /// Appends those of another list of the same file.
+    pub fn extend(&mut self, other: &Self) {
+        let bases = other.blocks.iter().zip(other.offsets.chunks(Self::BLOCK));
+        bases
+            .flat_map(|(base, offsets)| offsets.iter().map(move |&offset| base + u64::from(offset)))
+            .for_each(|start| self.push(start));
+    }
+
     /// The byte offset of shape `index`.
     pub fn get(&self, index: usize) -> Option<u64> {
         let base = self.blocks.get(index / Self::BLOCK)?;

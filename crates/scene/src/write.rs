@@ -1,6 +1,7 @@
 //! A scene file as `.ray` text in one canonical form: reading it back gives the same file, apart from places.
 
 mod foreign;
+mod hmc;
 
 use crate::dialect::Dialect;
 use crate::model::Attenuation;
@@ -19,9 +20,8 @@ use dotray_geometry::Vec3;
 use std::fmt;
 use std::fmt::Write;
 
-/// The text of one file in its own dialect, where that is `uva` or `jhu`, else in the slides' own. Names and material
-/// texts that no `.ray` text can hold (a `!` inside `!…!`, a `"` inside a name that needs quotation marks) lose those
-/// signs.
+/// The text of one file in its own dialect. Names and material texts that no `.ray` text can hold (a `!` inside `!…!`,
+/// a `"` inside a name that needs quotation marks) lose those signs.
 pub fn write(file: &SceneFile) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -34,6 +34,9 @@ pub fn write(file: &SceneFile) -> String {
 /// # Errors
 /// Those of `out`.
 pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
+    if file.dialect == Dialect::Hmc {
+        return hmc::write_file(out, file);
+    }
     if is_empty(file) {
         // A text without any directive would be no scene.
         return writeln!(out, "#light_num 0");
@@ -44,8 +47,15 @@ pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
     };
     // Only the slides' own and `uva` say how many follow.
     let counted = file.dialect != Dialect::Jhu;
+    let in_degrees = file.dialect == Dialect::Unisa;
+    if in_degrees && file.vertices.is_empty() {
+        // Nothing else would tell the dialect.
+        writeln!(out, "#shader \"none\" \"none\"")?;
+    }
     if let Some(camera) = file.camera.as_ref().filter(|_| by_weights) {
         foreign::write_camera(out, &camera.value)?;
+    } else if let Some(camera) = file.camera.as_ref().filter(|_| in_degrees) {
+        hmc::write_camera(out, &camera.value)?;
     } else if let Some(camera) = &file.camera {
         let Camera { position, direction, up, half_angle } = camera.value;
         let angle = Shortest(half_angle);
@@ -60,7 +70,7 @@ pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
     let mut tints = file.tints.iter().chain(std::iter::repeat(&Tint::PLAIN));
     write_list(out, counted, "#light_num", &file.lights, |out, light| match (by_weights, tints.next()) {
         (true, Some(tint)) => foreign::write_light(out, file.dialect, &light.value, tint),
-        (true, None) | (false, _) => write_light(out, &light.value),
+        (true, None) | (false, _) => write_light(out, file.dialect, &light.value),
     })?;
     write_list(out, counted, "#texture_num", &file.textures, |out, name| {
         writeln!(out, "#texture {}", Name(&name.value))
@@ -70,7 +80,9 @@ pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
         false => write_material(out, &material.value),
     })?;
     write_list(out, counted, "#vertex_num", &file.vertices, |out, Vertex { position, normal, texcoord }| {
-        writeln!(out, "#vertex {} {} {}", Triple(*position), Triple(*normal), Pair(*texcoord))
+        // The colour of `unisa`'s vertices, which nothing shows, is white.
+        let color = if in_degrees { " 1 1 1" } else { "" };
+        writeln!(out, "#vertex {} {} {}{color}", Triple(*position), Triple(*normal), Pair(*texcoord))
     })?;
     for include in &file.includes {
         writeln!(out, "#ray_file {}", Name(&include.value.name))?;
@@ -104,11 +116,12 @@ fn write_list<T, W: Write>(
     list.iter().try_for_each(|value| entry(out, value))
 }
 
-fn write_light(out: &mut impl Write, light: &Light) -> fmt::Result {
+fn write_light(out: &mut impl Write, dialect: Dialect, light: &Light) -> fmt::Result {
     match light {
         Light::Point { color, position, attenuation } => {
             writeln!(out, "#light_point {} {} {}", Triple(*color), Triple(*position), Fading(attenuation))
         }
+        Light::Spot { .. } if matches!(dialect, Dialect::Hmc | Dialect::Unisa) => hmc::write_spot(out, light),
         Light::Spot { color, position, direction, attenuation, cutoff, dropoff } => {
             let [color, position, direction] = [*color, *position, *direction].map(Triple);
             let [cutoff, dropoff] = [*cutoff, *dropoff].map(Shortest);
@@ -179,8 +192,9 @@ fn write_shape(out: &mut impl Write, file: &SceneFile, kind: ShapeKind, index: u
             write!(out, " {} {radius} {height}", Triple(cylinder.center()))
         }),
         ShapeKind::Cone => file.cones.shapes.get(index).map_or(Ok(()), |cone| {
-            let [radius, height] = [cone.radius(), cone.height()].map(Shortest);
-            write!(out, " {} {radius} {height}", Triple(cone.center()))
+            let [radius, height, top] = [cone.radius(), cone.height(), cone.top()].map(Shortest);
+            write!(out, " {} {radius} {height}", Triple(cone.center()))?;
+            if cone.top() > 0.0 { write!(out, " {top}") } else { Ok(()) }
         }),
         ShapeKind::Triangle => file.triangles.shapes.get(index).map_or(Ok(()), |triangle| {
             let [a, b, c] = triangle.vertices().map(Triple);
@@ -192,7 +206,7 @@ fn write_shape(out: &mut impl Write, file: &SceneFile, kind: ShapeKind, index: u
             let [tube, ring] = [torus.tube(), torus.ring()].map(Shortest);
             write!(out, " {} {tube} {ring}", Triple(torus.center()))
         }),
-        // No dialect that is written has such a shape.
+        // Only `hmc` has such a shape, and writes it itself.
         ShapeKind::Open => Ok(()),
         ShapeKind::IndexedTriangle => {
             file.indexed_triangles.shapes.get(index).map_or(Ok(()), |[a, b, c]| write!(out, " {a} {b} {c}"))

@@ -85,12 +85,13 @@ fn every_directive_is_read_as_its_example_says() {
         run(ShapeKind::Sphere),
         run(ShapeKind::Cuboid),
         run(ShapeKind::Cylinder),
-        run(ShapeKind::Cone),
+        Item::Run { kind: ShapeKind::Cone, first: 0, count: 2 },
         run(ShapeKind::Triangle),
         run(ShapeKind::IndexedTriangle),
         Item::Instance(0),
     ];
     assert_eq!(main.items, tree);
+    assert_eq!([0, 1].map(|cone: usize| main.cones.shapes[cone].top()), [0.0, 0.5]);
     assert_eq!(part.spheres.shapes.len(), 1);
     assert_eq!(part.path, Path::new("part.ray"));
 }

@@ -30,7 +30,7 @@ fn allowed(member: &str) -> Option<&'static [&'static str]> {
         "dotray-render" => &FLOORS[..4],
         "dotray-grade" => &FLOORS[..5],
         "dotray-lsp" => &["dotray-scene"],
-        "dotray" | "dotray-viewer" | "dotray-python" => &FLOORS,
+        "dotray" | "rayview" | "dotray-python" => &FLOORS,
         "dotray-tests" | "dotray-xtask" | "xtask" => &EVERYTHING,
         _ => return None,
     })
@@ -139,7 +139,7 @@ fn planted_faults_are_found() {
             ["dotray-scene uses dotray-image, which is on no floor below it"]
         );
     }
-    assert_eq!(of("dotray-viewer", "[dependencies]\ndotray = \"1\"").len(), 1);
+    assert_eq!(of("rayview", "[dependencies]\ndotray = \"1\"").len(), 1);
     assert_eq!(of("dotray-tests", "[dependencies]\ndotray-viewer = \"1\"").len(), 1);
     assert_eq!(of("dotray-new", "").len(), 1);
     for line in ["\nversion.workspace = true", "\nlicense.workspace = true", "\n[lints]\nworkspace = true"] {

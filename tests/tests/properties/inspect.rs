@@ -4,19 +4,23 @@
 use dotray_accel::Kind;
 use dotray_accel::simd::level;
 use dotray_geometry::Vec3;
+use dotray_render::Crop;
 use dotray_render::Layer;
+use dotray_render::LayerPicture;
 use dotray_render::Options;
 use dotray_render::Silent;
 use dotray_render::World;
 use dotray_render::camera::Camera;
 use dotray_render::inspect::Branch;
 use dotray_render::inspect::End;
+use dotray_render::inspect::Meeting;
 use dotray_render::inspect::RayNode;
 use dotray_render::inspect::Shadow;
 use dotray_render::render_layers;
 use dotray_render::trace::Tracer;
 use dotray_scene::files::Disk;
 use dotray_tests::pictures;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Mirrors, glass, textures, all lights.
@@ -112,27 +116,99 @@ fn the_terms_add_up_to_the_pixel() {
     assert!([blocked, crossed, area, reflected, refracted, limit, threshold].iter().all(|&count| count > 10));
 }
 
+/// All rays that a ray led to, and what they were tested against: rays, boxes, shapes.
+fn cost(node: &RayNode) -> [u64; 3] {
+    let mut cost = [1, node.tests.boxes, node.tests.shapes];
+    let mut add = |more: [u64; 3]| cost.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    let Some(met) = &node.meeting else { return cost };
+    for term in met.lights.iter().filter(|term| !matches!(term.shadow, Shadow::NotAsked)) {
+        add([1, term.tests.boxes, term.tests.shapes]);
+    }
+    for branch in [&met.reflected, &met.refracted] {
+        if let Branch::Traced(node) = branch {
+            add(self::cost(node));
+        }
+    }
+    cost
+}
+
+/// The mean of what comes through of the lights that face the point.
+fn light_share(met: &Meeting) -> Vec3 {
+    let facing: Vec<Vec3> =
+        met.lights.iter().filter(|term| term.lit != Vec3::ZERO).map(|term| term.filter).collect();
+    if facing.is_empty() { Vec3::ONE } else { facing.iter().sum::<Vec3>() / facing.len() as f64 }
+}
+
+/// What a layer must hold of a pixel, by its tree.
+fn expected(layer: Layer, node: &RayNode) -> Vec<f32> {
+    let met = node.meeting.as_ref();
+    let single = |x: f64| vec![x as f32];
+    let vector = |v: Vec3| v.to_array().map(|x| x as f32).to_vec();
+    let of_point = |value: fn(&Meeting) -> Vec3| vector(met.map_or(Vec3::ZERO, value));
+    match layer {
+        Layer::Depth => single(met.map_or(f64::INFINITY, |met| met.nearest.hit.t)),
+        Layer::Normal => of_point(|met| met.normal),
+        Layer::Position => of_point(|met| met.surface.point),
+        Layer::Shape => single(met.map_or(-1.0, |met| f64::from(met.nearest.number))),
+        Layer::Material => single(met.map_or(-1.0, |met| f64::from(met.material))),
+        Layer::St => {
+            let st = met.map_or([0.0; 2], |met| met.surface.in_object.texcoord.get().to_array());
+            st.map(|x| x as f32).to_vec()
+        }
+        Layer::Object => of_point(|met| met.surface.in_object.point),
+        Layer::Shadow => vector(met.map_or(Vec3::ONE, light_share)),
+        Layer::Direct => vector(met.map_or(node.color, Meeting::direct)),
+        Layer::Reflected => of_point(|met| met.reflected.color()),
+        Layer::Transmitted => of_point(|met| met.refracted.color()),
+        Layer::Rays => single(cost(node)[0] as f64),
+        Layer::BoxTests => single(cost(node)[1] as f64),
+        Layer::ShapeTests => single(cost(node)[2] as f64),
+    }
+}
+
 #[test]
 fn layers_hold_what_the_trees_tell() {
-    let world = world("glasses");
-    let layers =
-        render_layers(&world, &options(), &Layer::ALL, &Silent).expect("options are fine").expect("done");
-    let trees = trees(&world);
-    let of = |layer: Layer| &layers.iter().find(|picture| picture.layer == layer).expect("asked for").samples;
-    for (index, node) in trees.iter().enumerate() {
-        let depth = node.meeting.as_ref().map_or(f32::INFINITY, |met| met.nearest.hit.t as f32);
-        assert_eq!(of(Layer::Depth)[index], depth);
-        let number = node.meeting.as_ref().map_or(-1.0, |met| met.nearest.number as f32);
-        assert_eq!(of(Layer::Shape)[index], number);
-        // The three parts of the colour are the colour.
-        let part = |layer: Layer, k: usize| of(layer)[3 * index + k];
-        for k in 0..3 {
-            let sum = part(Layer::Direct, k) + part(Layer::Reflected, k) + part(Layer::Transmitted, k);
-            assert!((sum - node.color[k] as f32).abs() < 1e-5);
+    let mut uneven = BTreeSet::new();
+    for name in SCENES {
+        let world = world(name);
+        let layers = |wanted: &[Layer]| {
+            render_layers(&world, &options(), wanted, &Silent).expect("options are fine").expect("done")
+        };
+        let trees = trees(&world);
+        let all = layers(&Layer::ALL);
+        for LayerPicture { layer, samples, .. } in &all {
+            let expected: Vec<f32> = trees.iter().flat_map(|node| expected(*layer, node)).collect();
+            let differ = expected.iter().zip(samples).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+            assert_eq!((samples.len(), differ), (expected.len(), 0), "{name}: {layer:?}");
+            let first = &samples[..layer.channels().len()];
+            if samples.chunks_exact(first.len()).any(|pixel| pixel != first) {
+                uneven.insert(layer.name());
+            }
         }
-        assert!(of(Layer::Rays)[index] >= 1.0);
+        // Without layers of cost rays travel together, and without any of light none of it is worked out.
+        let lit = [Layer::Shadow, Layer::Direct, Layer::Reflected, Layer::Transmitted];
+        assert_eq!(layers(&lit), all[7..11], "{name}");
+        assert_eq!(layers(&Layer::ALL[..7]), all[..7], "{name}");
     }
-    assert!(of(Layer::BoxTests).iter().sum::<f32>() > of(Layer::Rays).iter().sum::<f32>());
-    assert!(of(Layer::Shadow).iter().any(|&share| share < 1.0));
-    assert!(of(Layer::Normal).iter().all(|x| x.abs() <= 1.0));
+    // Layers that are the same everywhere would show nothing.
+    assert_eq!(uneven.len(), Layer::ALL.len(), "{uneven:?}");
+}
+
+#[test]
+fn layers_of_a_window_are_a_window_of_the_layers() {
+    let world = world("glasses");
+    let layers = |crop| {
+        let options = Options { crop, threads: Some(2), ..options() };
+        render_layers(&world, &options, &Layer::ALL, &Silent).expect("options are fine").expect("done")
+    };
+    let (whole, part) = (layers(None), layers(Some(Crop { x: 7, y: 9, width: 18, height: 11 })));
+    for (whole, part) in whole.iter().zip(&part) {
+        let count = whole.layer.channels().len();
+        assert_eq!((part.width, part.height), (18, 11));
+        for row in 0..11 {
+            let start = ((row + 9) * 40 + 7) * count;
+            let expected = &whole.samples[start..start + 18 * count];
+            assert_eq!(&part.samples[row * 18 * count..(row + 1) * 18 * count], expected, "{:?}", part.layer);
+        }
+    }
 }

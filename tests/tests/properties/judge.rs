@@ -122,10 +122,10 @@ fn crossings(shape: &AnyShape, origin: V, direction: V) -> Vec<f64> {
             solid_crossings(depth, (r * r + half * half).sqrt(), origin, direction)
         }
         "#shape_cone" => {
-            let (r, h) = (n[3], n[4]);
-            let width = |y: f64| r * (h / 2.0 - y) / h;
-            let depth = |p: V| ((p[0] * p[0] + p[2] * p[2]).sqrt() - width(p[1])).max(-h / 2.0 - p[1]);
-            solid_crossings(depth, (r * r + h * h / 4.0).sqrt(), origin, direction)
+            let (r, h, top) = (n[3], n[4], n.get(5).copied().unwrap_or(0.0));
+            let width = |y: f64| top + (r - top) * (h / 2.0 - y) / h;
+            let depth = |p: V| ((p[0] * p[0] + p[2] * p[2]).sqrt() - width(p[1])).max(p[1].abs() - h / 2.0);
+            solid_crossings(depth, (r.max(top).powi(2) + h * h / 4.0).sqrt(), origin, direction)
         }
         other => panic!("no judge for {other}"),
     }
@@ -191,6 +191,7 @@ fn the_judge_knows_simple_cases() {
         ([0.0, 0.0, 0.0, 1.0, 1.0, 4.0].as_slice(), "#shape_box", 8.0),
         (&[0.0, 0.0, 0.0, 1.0, 2.0], "#shape_cylinder", 9.0),
         (&[0.0, 0.0, 0.0, 1.0, 2.0], "#shape_cone", 9.5),
+        (&[0.0, 0.0, 0.0, 1.0, 2.0, 2.0], "#shape_cone", 8.5),
     ] {
         let judge = Judge::new(&[group(unit, shape(kind, numbers))]);
         assert!((judge.nearest(eye, forward, 0.0).expect("a hit") - t).abs() < 1e-12, "{kind}");

@@ -108,6 +108,7 @@ pub fn shape() -> impl Strategy<Value = AnyShape> {
         of("#shape_box", 3),
         of("#shape_cylinder", 2),
         of("#shape_cone", 2),
+        of("#shape_cone", 3),
         triangle,
     ]
 }

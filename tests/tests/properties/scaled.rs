@@ -77,7 +77,8 @@ fn written_at_scale(scene: &Scene, s: f64) -> Scene {
         }
         for shape in &mut file.cones.shapes {
             *shape =
-                Cone::new(shape.center() * s, shape.radius() * s, shape.height() * s).expect("still a cone");
+                Cone::truncated(shape.center() * s, shape.radius() * s, shape.top() * s, shape.height() * s)
+                    .expect("still a cone");
         }
         for triangle in &mut file.triangles.shapes {
             *triangle = scale_triangle(triangle, s);

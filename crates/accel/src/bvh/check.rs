@@ -5,8 +5,11 @@ use crate::bvh::wide::Tree;
 use crate::input::Boxes;
 use crate::input::Kind;
 use crate::narrow::NarrowBox;
+use crate::stats::Below;
+use crate::stats::Cell;
 use crate::stats::Defect;
 use crate::stats::Stats;
+use crate::stats::level_by_level;
 
 /// Whether one box holds another.
 fn holds(outer: &NarrowBox, inner: &NarrowBox) -> bool {
@@ -43,6 +46,15 @@ impl Tree {
             }
         }
         Ok(())
+    }
+
+    /// The first boxes, level by level.
+    pub fn cells(&self, most: usize) -> Vec<Cell> {
+        level_by_level((self.root, *self.frame.scene()), most, |child, _| {
+            let node = self.nodes.get(child.0 as usize).filter(|_| !child.is_leaf())?;
+            let below = |lane: usize| (node.children[lane], self.frame.widen(&node.bounds(lane)));
+            Some(node.present().map(below).collect::<Below<Child>>())
+        })
     }
 
     /// Its figures.

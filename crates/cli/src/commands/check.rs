@@ -4,7 +4,6 @@ use dotray::scene::Diagnostic;
 use dotray::scene::Files;
 use dotray::scene::codes::all_codes;
 use dotray::scene::codes::explain;
-use dotray::scene::load::LoadOptions;
 use dotray::scene::load::load;
 use dotray::scene::load::load_text;
 use dotray::scene::look_over::look_over;
@@ -27,12 +26,12 @@ use crate::findings::github;
 use crate::findings::json;
 use crate::findings::sarif;
 use crate::input::standard_input;
-use crate::limits::load_limits;
+use crate::limits::load_options;
 use crate::limits::reachable;
 use crate::limits::resolve_limits;
 use crate::meaning::Place;
 use crate::messages::wants_color;
-use crate::reading_args::LimitArgs;
+use crate::reading_args::ReadingArgs;
 use crate::scenes::Asked;
 use crate::scenes::expand;
 use crate::textures::Textures;
@@ -44,11 +43,11 @@ pub fn run(typed: &CheckArgs, color: When) -> Result<(), Failure> {
         return put(explained(code)?.as_bytes());
     }
     let color = typed.format == CheckFormat::Text && wants_color(color, io::stdout().is_terminal());
-    let disk = reachable(&typed.limits)?;
+    let disk = reachable(&typed.reading.limits)?;
     let mut textures = Textures::new(&*disk);
     let checked: Result<Vec<Checked>, Failure> = expand(&typed.files)
         .iter()
-        .map(|asked| Checked::new(asked, &typed.limits, &*disk, &mut textures, color))
+        .map(|asked| Checked::new(asked, &typed.reading, &*disk, &mut textures, color))
         .collect();
     let report = gather(checked?);
     let text = match typed.format {
@@ -72,12 +71,12 @@ struct Checked {
 impl Checked {
     fn new(
         asked: &Asked,
-        limits: &LimitArgs,
+        reading: &ReadingArgs,
         disk: &dyn Files,
         textures: &mut Textures<'_>,
         color: bool,
     ) -> Result<Self, Failure> {
-        let options = LoadOptions { limits: load_limits(limits), ..LoadOptions::default() };
+        let options = load_options(reading);
         let (name, loaded) = match asked {
             Asked::Scene(Place::File(path)) => (path.clone(), load(path, disk, &options)),
             Asked::Scene(Place::Standard) => {
@@ -88,7 +87,7 @@ impl Checked {
             Asked::Nothing(folder) => return Ok(Self::nothing(folder, color)),
         };
         let (diagnostics, sources) =
-            look_over(loaded, &resolve_limits(limits), |named| textures.check(named));
+            look_over(loaded, &resolve_limits(&reading.limits), |named| textures.check(named));
         let scene = name.display().to_string();
         let findings = diagnostics.iter().map(|found| Finding::new(found, &sources, &scene, color)).collect();
         let numbers = 0..u32::try_from(sources.len()).unwrap_or(u32::MAX);

@@ -2,7 +2,6 @@
 
 use dotray::image::write_file;
 use dotray::scene::Dialect;
-use dotray::scene::convert::ConvertError;
 use dotray::scene::convert::convert;
 use dotray::scene::model::SceneFile;
 use dotray::scene::resolve::resolve_within;
@@ -42,10 +41,7 @@ pub fn run(typed: &ConvertArgs, color: When) -> Result<(), Failure> {
     }
     let folder = folder_of(&out);
     let texture = |file: &SceneFile, name: &str| renamed(&folder, &file.path, name);
-    let converted = convert(&scene, to, &texture).map_err(|error| match error {
-        ConvertError::NotWritten(_) => Failure::Usage(error.to_string()),
-        ConvertError::Walk(_) | ConvertError::TooManyShapes(_) => Failure::Failed(error.to_string()),
-    })?;
+    let converted = convert(&scene, to, &texture).map_err(|error| Failure::Failed(error.to_string()))?;
     for lost in &converted.lost {
         match lost.span {
             Some(span) => say(&format!("{}: not carried over: {}", sources.place(span), lost.message)),

@@ -6,7 +6,6 @@ use dotray::scene::Severity;
 use dotray::scene::format::format_text;
 use dotray::scene::format::is_structural;
 use dotray::scene::format::says_the_same;
-use dotray::scene::load::LoadOptions;
 use dotray::scene::load::load_text;
 use dotray::scene::span::FileId;
 use std::io;
@@ -20,10 +19,12 @@ use crate::exit::put;
 use crate::exit::say;
 use crate::input::standard_input;
 use crate::limits::load_limits;
+use crate::limits::load_options;
 use crate::limits::reachable;
 use crate::meaning::Place;
 use crate::messages::Messages;
 use crate::reading_args::LimitArgs;
+use crate::reading_args::ReadingArgs;
 use crate::scenes::Asked;
 use crate::scenes::expand;
 use crate::values::When;
@@ -54,8 +55,8 @@ pub fn run(typed: &FormatArgs, color: When) -> Result<(), Failure> {
 
 /// Formats one file; false where it is at fault or, where it is only checked, would change.
 fn one(place: &Place, typed: &FormatArgs, messages: Messages) -> Result<bool, Failure> {
-    let (name, old) = read(place, &typed.limits)?;
-    let Some(Layout { old, new }) = layout(&name, old, &typed.limits, messages)? else { return Ok(false) };
+    let (name, old) = read(place, &typed.reading.limits)?;
+    let Some(Layout { old, new }) = layout(&name, old, &typed.reading, messages)? else { return Ok(false) };
     let changes = old != new;
     match place {
         Place::File(_) | Place::Standard if typed.check => {
@@ -102,10 +103,10 @@ struct Layout {
 fn layout(
     name: &Path,
     text: Vec<u8>,
-    limits: &LimitArgs,
+    reading: &ReadingArgs,
     messages: Messages,
 ) -> Result<Option<Layout>, Failure> {
-    let options = LoadOptions { limits: load_limits(limits), ..LoadOptions::default() };
+    let options = load_options(reading);
     let loaded = load_text(&name.display().to_string(), text, &Nothing, &options);
     let structural = |code: &str| is_structural(code) && code != "cannot-read";
     let mut faults = loaded.diagnostics;

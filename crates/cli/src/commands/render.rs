@@ -2,8 +2,10 @@
 
 use dotray::render::Fingerprint;
 use dotray::render::Rendering;
+use dotray::render::Stats;
 use dotray::render::Textures;
 use dotray::render::World;
+use dotray::render::on_threads;
 use dotray::scene::sources::Sources;
 use std::time::Instant;
 
@@ -56,7 +58,7 @@ struct Ready {
 /// Reads the scene and makes it ready, within the limits.
 fn ready(typed: &RenderArgs, plan: &Plan, messages: Messages) -> Result<Ready, Failure> {
     let Understood { mut resolved, sources, disk, text_bytes, seconds } =
-        understand(&plan.input, &typed.reading, messages)?;
+        on_threads(plan.options.threads, || understand(&plan.input, &typed.reading, messages))??;
     interrupt::check()?;
     if typed.missing_texture == MissingTexture::White {
         input::whiten(&mut resolved, &disk, plan.quiet);
@@ -108,19 +110,29 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     seconds.push(("encode", encoding.elapsed().as_secs_f64()));
     interrupt::check()?;
     let writing = Instant::now();
-    output::write_or_rescue(&plan.output, &picture).map_err(|failure| with_kept(failure, keep.as_ref()))?;
-    for (path, bytes) in layers {
-        output::write(&Place::File(path), &bytes)?;
-    }
+    let written = output::write_all(&plan.output, &picture, &layers);
+    written.map_err(|failure| with_kept(failure, keep.as_ref()))?;
     if let Some(keep) = keep {
         keep.remove();
     }
     seconds.push(("write", writing.elapsed().as_secs_f64()));
     seconds.push(("total", start.elapsed().as_secs_f64()));
 
+    say_done(&plan, start);
+    say_cost(&plan, &cost(&plan, &world, &stats, text_bytes, seconds))
+}
+
+/// What the picture cost.
+fn cost(
+    plan: &Plan,
+    world: &World,
+    stats: &Stats,
+    text_bytes: u64,
+    seconds: Vec<(&'static str, f64)>,
+) -> Cost {
     let tracing = seconds.iter().find(|(stage, _)| *stage == "trace").map_or(0.0, |(_, seconds)| *seconds);
     let window = plan.options.window();
-    let cost = Cost {
+    Cost {
         version: env!("CARGO_PKG_VERSION"),
         scene: shown(&plan.input),
         picture: shown(&plan.output),
@@ -128,15 +140,13 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
         height: window.height,
         accelerator: plan.prepare.accel.name(),
         simd: dotray::accel::simd::level_name(dotray::accel::simd::level()),
-        threads: threads(&plan),
+        threads: threads(plan),
         shapes: world.shape_count(),
-        rays: Rays::new(&stats, tracing),
-        tests: Tests::new(&stats),
+        rays: Rays::new(stats, tracing),
+        tests: Tests::new(stats),
         memory: memory(text_bytes, &stats.memory),
         seconds,
-    };
-    say_done(&plan, start);
-    say_cost(&plan, &cost)
+    }
 }
 
 /// The failure, and where the finished tiles are.

@@ -14,7 +14,8 @@ use crate::explain::text::kind_name;
 /// The graph: a node a ray, filled with its colour, a node a shadow ray and an ended branch.
 pub fn dot(of: &Explanation<'_>) -> String {
     let mut graph = String::from(
-        "digraph rays {\n  rankdir=LR;\n  node [shape=box, style=filled, fontname=\"sans-serif\"];\n",
+        "digraph rays {\n  rankdir=LR;\n  node [shape=box, style=filled, fontname=\"sans-serif\"];\n  \
+         edge [fontname=\"sans-serif\", fontsize=11];\n",
     );
     for (id, ray) in of.rays.iter().enumerate() {
         // Writing into a string cannot fail.

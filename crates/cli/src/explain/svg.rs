@@ -6,8 +6,10 @@ use dotray::render::inspect::LightTerm;
 use dotray::render::inspect::RayKind;
 use dotray::render::inspect::Shadow;
 use dotray::scene::resolved::Run;
+use std::collections::BTreeMap;
 
 use crate::drawing::Drawing;
+use crate::drawing::Side;
 use crate::drawing::View;
 use crate::explain::Explanation;
 use crate::explain::text::kind_name;
@@ -30,10 +32,18 @@ pub fn svg(of: &Explanation<'_>) -> String {
     for (number, place) in &of.shapes {
         drawing.outline(&place.bounds, MET, &of.shape_name(*number));
     }
+    // A light is named once, however many rays ask for it.
+    let mut lights = BTreeMap::new();
     for ray in of.rays.iter() {
         for term in ray.node.meeting.iter().flat_map(|met| &met.lights) {
-            shadow_ray(of, &mut drawing, ray.node.meeting.as_ref().map(|met| met.surface.point), term);
+            let from = ray.node.meeting.as_ref().map(|met| met.surface.point);
+            if let Some(end) = shadow_ray(of, &mut drawing, from, term) {
+                lights.entry(term.light).or_insert(end);
+            }
         }
+    }
+    for (number, end) in lights {
+        drawing.mark(end, "#c9a800", &format!("light {number}"), Side::Below);
     }
     for (id, ray) in of.rays.iter().enumerate() {
         let node = ray.node;
@@ -50,7 +60,7 @@ pub fn svg(of: &Explanation<'_>) -> String {
         drawing.line(node.ray.origin, end, look, &name);
     }
     if let Some(eye) = of.rays.first() {
-        drawing.mark(eye.node.ray.origin, "#1f5fbf", "eye");
+        drawing.mark(eye.node.ray.origin, "#1f5fbf", "eye", Side::Above);
     }
     let title = match of.pixel {
         Some((x, y)) => format!("{}: rays of pixel {x} {y}", of.scene),
@@ -66,13 +76,23 @@ pub fn svg(of: &Explanation<'_>) -> String {
     drawing.finish(&title, &legend)
 }
 
-/// The box around all rays that meet something: a floor that reaches to the horizon would make them too small to see.
+/// The box around all rays that meet something, and the lights that are near: a floor that reaches to the horizon would
+/// make them too small to see.
 fn region(of: &Explanation<'_>) -> Aabb {
     let mut region = Aabb::EMPTY;
     for ray in &of.rays {
         region = region.grown(ray.node.ray.origin);
         if let Some(met) = &ray.node.meeting {
             region = region.grown(met.surface.point);
+        }
+    }
+    let farthest = 2.0 * region.size().max_element();
+    for met in of.rays.iter().filter_map(|ray| ray.node.meeting.as_ref()) {
+        for incident in met.lights.iter().filter_map(|term| term.incident.as_ref()) {
+            let with_light = region.grown(met.surface.point + incident.towards * incident.distance);
+            if incident.distance.is_finite() && with_light.size().max_element() <= farthest {
+                region = with_light;
+            }
         }
     }
     let margin = 0.15 * region.size().max_element();
@@ -102,14 +122,19 @@ fn others(of: &Explanation<'_>, drawing: &mut Drawing) {
     }
 }
 
-fn shadow_ray(of: &Explanation<'_>, drawing: &mut Drawing, from: Option<Vec3>, term: &LightTerm) {
-    let (Some(from), Some(incident)) = (from, &term.incident) else { return };
-    // Of an area light every eighth sample shows enough.
+/// Draws it and says where it ends; of an area light every eighth sample shows enough.
+fn shadow_ray(
+    of: &Explanation<'_>,
+    drawing: &mut Drawing,
+    from: Option<Vec3>,
+    term: &LightTerm,
+) -> Option<Vec3> {
+    let (from, incident) = (from?, term.incident.as_ref()?);
     if term.samples > 8 && !term.sample.is_multiple_of(term.samples / 8) {
-        return;
+        return None;
     }
     let look = match &term.shadow {
-        Shadow::NotAsked => return,
+        Shadow::NotAsked => return None,
         Shadow::Blocked { .. } => BLOCKED,
         Shadow::Crossed(_) => FREE,
     };
@@ -119,7 +144,5 @@ fn shadow_ray(of: &Explanation<'_>, drawing: &mut Drawing, from: Option<Vec3>, t
         beyond(of, from, incident.towards)
     };
     drawing.line(from, end, look, &format!("to light {}", term.light));
-    if term.sample == 0 {
-        drawing.mark(end, "#c9a800", &format!("light {}", term.light));
-    }
+    Some(end)
 }

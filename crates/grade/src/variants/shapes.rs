@@ -17,7 +17,7 @@ pub fn doubled(scene: &mut Scene) {
     for file in &mut scene.files {
         each(&mut file.cuboids.shapes, |s| Cuboid::new(s.center(), 2.0 * s.size()));
         each(&mut file.cylinders.shapes, |s| Cylinder::new(s.center(), s.radius(), 2.0 * s.height()));
-        each(&mut file.cones.shapes, |s| Cone::new(s.center(), s.radius(), 2.0 * s.height()));
+        each(&mut file.cones.shapes, |s| Cone::truncated(s.center(), s.radius(), s.top(), 2.0 * s.height()));
     }
 }
 
@@ -27,7 +27,9 @@ pub fn centre_at_base(scene: &mut Scene) {
         each(&mut file.cylinders.shapes, |s| {
             Cylinder::new(s.center() + up(s.height()), s.radius(), s.height())
         });
-        each(&mut file.cones.shapes, |s| Cone::new(s.center() + up(s.height()), s.radius(), s.height()));
+        each(&mut file.cones.shapes, |s| {
+            Cone::truncated(s.center() + up(s.height()), s.radius(), s.top(), s.height())
+        });
     }
 }
 
@@ -35,7 +37,9 @@ pub fn radius_halved(scene: &mut Scene) {
     for file in &mut scene.files {
         each(&mut file.spheres.shapes, |s| Sphere::new(s.center(), 0.5 * s.radius()));
         each(&mut file.cylinders.shapes, |s| Cylinder::new(s.center(), 0.5 * s.radius(), s.height()));
-        each(&mut file.cones.shapes, |s| Cone::new(s.center(), 0.5 * s.radius(), s.height()));
+        each(&mut file.cones.shapes, |s| {
+            Cone::truncated(s.center(), 0.5 * s.radius(), 0.5 * s.top(), s.height())
+        });
     }
 }
 

@@ -16,13 +16,21 @@ use crate::model::Vertex;
 use crate::model::Weights;
 use crate::span::FileId;
 use crate::span::Span;
+use dotray_geometry::Cone;
 use dotray_geometry::OpenSide;
 use dotray_geometry::Vec3;
 
 /// Collects what is lost.
-type Lost = Vec<Diagnostic>;
+pub(super) type Lost = Vec<Diagnostic>;
 
-fn lose(lost: &mut Lost, span: Option<Span>, message: impl Into<String>) {
+/// A material as it is carried into a dialect.
+#[derive(Clone, Copy)]
+pub(super) struct Use {
+    pub to: Dialect,
+    pub span: Span,
+}
+
+pub(super) fn lose(lost: &mut Lost, span: Option<Span>, message: impl Into<String>) {
     let warning = Diagnostic::warning("not-carried", message);
     lost.push(Diagnostic { span, ..warning });
 }
@@ -47,7 +55,7 @@ pub fn carry(written: &[SceneFile], mut file: SceneFile, to: Dialect, lost: &mut
                 if into.texture_on_all_light { "highlights and emission, too" } else { "matte light only" };
             lose(lost, Some(*span), format!("the material's texture now colours {whole}"));
         }
-        material(value, weights, to, *span, lost);
+        material(value, weights, Use { to, span: *span }, lost);
     }
     if from.see_through_shadows != into.see_through_shadows && transmits.is_some() {
         let how = if into.see_through_shadows { "let light pass" } else { "block light" };
@@ -57,13 +65,22 @@ pub fn carry(written: &[SceneFile], mut file: SceneFile, to: Dialect, lost: &mut
     if !into.default_material {
         write_default_material(&mut file);
     }
-    close_open_sides(&mut file);
-    if to != Dialect::Jhu {
+    if !has_open_sides(to) {
+        close_open_sides(&mut file);
+    }
+    if !has_tori(to) {
         drop_runs(&mut file.items, ShapeKind::Torus);
         file.tori = ShapeList::default();
     }
-    if to != Dialect::Slides {
-        share_vertices(&mut file);
+    if !has_truncated_cones(to) {
+        for cone in &mut file.cones.shapes {
+            *cone = Cone::new(cone.center(), cone.radius(), cone.height()).unwrap_or(*cone);
+        }
+    }
+    match to {
+        Dialect::Slides => {}
+        Dialect::Uva | Dialect::Jhu | Dialect::Unisa => share_vertices(&mut file),
+        Dialect::Hmc => super::hmc::flatten_triangles(&mut file, lost),
     }
     file.dialect = to;
     file
@@ -82,15 +99,41 @@ fn view(file: &SceneFile, from: &Conventions, into: &Conventions, lost: &mut Los
     }
 }
 
+fn has_tori(dialect: Dialect) -> bool {
+    match dialect {
+        Dialect::Jhu | Dialect::Hmc => true,
+        Dialect::Slides | Dialect::Uva | Dialect::Unisa => false,
+    }
+}
+
+fn has_truncated_cones(dialect: Dialect) -> bool {
+    match dialect {
+        Dialect::Slides => true,
+        Dialect::Uva | Dialect::Jhu | Dialect::Hmc | Dialect::Unisa => false,
+    }
+}
+
+fn has_open_sides(dialect: Dialect) -> bool {
+    match dialect {
+        Dialect::Hmc => true,
+        Dialect::Slides | Dialect::Uva | Dialect::Jhu | Dialect::Unisa => false,
+    }
+}
+
 fn shapes(written: &[SceneFile], to: Dialect, lost: &mut Lost) {
     for (number, file) in (0..).map(FileId).zip(written) {
-        if to != Dialect::Jhu {
+        if !has_tori(to) {
             for index in 0..file.tori.shapes.len() {
                 let span = file.shape_span(number, ShapeKind::Torus, index);
                 lose(lost, span, format!("`{to}` has no torus: it is left out"));
             }
         }
-        for index in 0..file.open_sides.shapes.len() {
+        let cones = file.cones.shapes.iter().enumerate();
+        for (index, _) in cones.filter(|(_, cone)| cone.top() > 0.0 && !has_truncated_cones(to)) {
+            let span = file.shape_span(number, ShapeKind::Cone, index);
+            lose(lost, span, format!("`{to}` has no truncated cone: it goes on to an apex"));
+        }
+        for index in (0..file.open_sides.shapes.len()).filter(|_| !has_open_sides(to)) {
             let span = file.shape_span(number, ShapeKind::Open, index);
             lose(lost, span, format!("`{to}` has closed shapes only: it is closed by discs"));
         }
@@ -107,18 +150,25 @@ fn weights_of(material: &Material) -> Weights {
 }
 
 /// Whether two colours are the same but for rounding.
-fn same(a: Color, b: Color) -> bool {
+pub(super) fn same(a: Color, b: Color) -> bool {
     (a - b).abs().max_element() <= 1e-12 * a.abs().max(b.abs()).max_element()
 }
 
-fn material(material: &mut Material, weights: Weights, to: Dialect, span: Span, lost: &mut Lost) {
-    if to == Dialect::Slides {
-        if material.weights.is_some() {
-            to_coefficients(material, weights, span, lost);
+fn material(material: &mut Material, weights: Weights, at: Use, lost: &mut Lost) {
+    let Use { to, span } = at;
+    match to {
+        Dialect::Slides | Dialect::Unisa => {
+            if material.weights.is_some() {
+                to_coefficients(material, weights, span, lost);
+            }
+            material.weights = None;
         }
-        material.weights = None;
-        return;
+        Dialect::Hmc => super::hmc::material(material, weights, at, lost),
+        Dialect::Uva | Dialect::Jhu => with_weights(material, weights, at, lost),
     }
+}
+
+fn with_weights(material: &mut Material, weights: Weights, Use { to, span }: Use, lost: &mut Lost) {
     if !same(weights.reflection, material.specular) {
         let message =
             format!("the mirror's weight becomes that of the highlight, which is all that `{to}` has");
@@ -135,6 +185,21 @@ fn material(material: &mut Material, weights: Weights, to: Dialect, span: Span, 
     material.weights = Some(Weights { reflection: material.specular, ..weights });
 }
 
+/// kt from the weight of transmission, as near as it comes.
+pub(super) fn transmission_coefficient(
+    specular: Color,
+    transmission: Color,
+    at: Use,
+    lost: &mut Lost,
+) -> f64 {
+    let most = specular.max_element();
+    let kt = if most > 0.0 { transmission.max_element() / most } else { 0.0 };
+    if !same(kt * specular, transmission) {
+        lose(lost, Some(at.span), format!("transparency becomes kt = {kt} of the highlight's colour"));
+    }
+    kt
+}
+
 /// ks and kt from weights, as near as they come.
 fn to_coefficients(material: &mut Material, weights: Weights, span: Span, lost: &mut Lost) {
     let ks = weights.shininess / 128.0;
@@ -142,12 +207,8 @@ fn to_coefficients(material: &mut Material, weights: Weights, span: Span, lost: 
         let message = format!("the mirror's weight becomes ks = {ks} of the highlight's colour");
         lose(lost, Some(span), message);
     }
-    let specular = material.specular.max_element();
-    let kt = if specular > 0.0 { weights.transmission.max_element() / specular } else { 0.0 };
-    if !same(kt * material.specular, weights.transmission) {
-        let message = format!("transparency becomes kt = {kt} of the highlight's colour");
-        lose(lost, Some(span), message);
-    }
+    let at = Use { to: Dialect::Slides, span };
+    let kt = transmission_coefficient(material.specular, weights.transmission, at, lost);
     (material.k_specular, material.k_transmission) = (ks, kt);
 }
 
@@ -234,7 +295,7 @@ fn drop_runs(items: &mut Vec<Item>, gone: ShapeKind) {
     items.retain(|item| !matches!(item, Item::Run { kind, .. } if *kind == gone));
 }
 
-fn push<T>(list: &mut ShapeList<T>, shape: T, material: i32) -> u32 {
+pub(super) fn push<T>(list: &mut ShapeList<T>, shape: T, material: i32) -> u32 {
     list.shapes.push(shape);
     list.materials.push(material);
     list.starts.push(0);
@@ -242,7 +303,11 @@ fn push<T>(list: &mut ShapeList<T>, shape: T, material: i32) -> u32 {
 }
 
 /// Runs of one kind become other runs, shape by shape.
-fn replace_runs(file: &mut SceneFile, gone: ShapeKind, mut one: impl FnMut(&mut SceneFile, usize) -> Item) {
+pub(super) fn replace_runs(
+    file: &mut SceneFile,
+    gone: ShapeKind,
+    mut one: impl FnMut(&mut SceneFile, usize) -> Item,
+) {
     for item in std::mem::take(&mut file.items) {
         match item {
             Item::Run { kind, first, count } if kind == gone => {

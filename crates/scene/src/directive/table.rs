@@ -254,17 +254,29 @@ pub static DIRECTIVES: [Spec; 24] = [
     Spec {
         directive: Directive::ShapeCone,
         word: "#shape_cone",
-        meaning: "A closed cone along y, its apex at cy + h/2.",
+        meaning: "A closed cone along y, its apex at cy + h/2; with a second radius a truncated one.",
         origin: Origin::Slides,
-        forms: &[form(
-            &[
-                MATERIAL,
-                lengths(&["cx", "cy", "cz"], "centre, at half height"),
-                lengths(&["r"], "radius of the base"),
-                lengths(&["h"], "height"),
-            ],
-            "#shape_cone 0  0 0 0  1.2 1.3",
-        )],
+        forms: &[
+            form(
+                &[
+                    MATERIAL,
+                    lengths(&["cx", "cy", "cz"], "centre, at half height"),
+                    lengths(&["r"], "radius of the base"),
+                    lengths(&["h"], "height"),
+                ],
+                "#shape_cone 0  0 0 0  1.2 1.3",
+            ),
+            form(
+                &[
+                    MATERIAL,
+                    lengths(&["cx", "cy", "cz"], "centre, at half height"),
+                    lengths(&["r"], "radius of the base"),
+                    lengths(&["h"], "height"),
+                    lengths(&["r2"], "radius of the upper disc, which closes it in place of the apex"),
+                ],
+                "#shape_cone 0  0 0 0  1.2 1.3 .5",
+            ),
+        ],
     },
     Spec {
         directive: Directive::ShapeTriangle,

@@ -14,6 +14,9 @@ use dotray_geometry::Vec3;
 /// How many arguments a material of the dialects `uva` and `jhu` has.
 const MATERIAL_OF_UVA: usize = 19;
 
+/// How many arguments a vertex has where its colour comes last.
+const VERTEX_OF_UNISA: usize = 11;
+
 impl Parser<'_> {
     /// The name or text argument of the directive at hand. Bytes that are no UTF-8 become U+FFFD.
     pub(super) fn word(&self) -> String {
@@ -71,7 +74,12 @@ impl Parser<'_> {
 
     pub(super) fn vertex(&mut self) {
         self.seen.vertices += 1;
-        let &[px, py, pz, nx, ny, nz, ts, tt, ..] = &self.values;
+        let &[px, py, pz, nx, ny, nz, ts, tt, r, g, b, ..] = &self.values;
+        let colored = self.call.count == VERTEX_OF_UNISA && [r, g, b] != [1.0; 3];
+        if colored && !self.seen.vertex_colors {
+            self.seen.vertex_colors = true;
+            self.ignored("the colours of vertices have no effect: surfaces have those of their material");
+        }
         self.scene.vertices.push(Vertex {
             position: Vec3::new(px, py, pz),
             normal: Vec3::new(nx, ny, nz),

@@ -37,8 +37,9 @@ impl Parser<'_> {
     }
 
     pub(super) fn cone(&mut self) {
-        let &[_, cx, cy, cz, r, h, ..] = &self.values;
-        let shape = Cone::new(Vec3::new(cx, cy, cz), r, h);
+        let &[_, cx, cy, cz, r, h, top, ..] = &self.values;
+        let top = if self.call.count == 7 { top } else { 0.0 };
+        let shape = Cone::truncated(Vec3::new(cx, cy, cz), r, top, h);
         self.shape(shape, ShapeKind::Cone, |scene| &mut scene.cones);
     }
 

@@ -34,7 +34,7 @@ pub fn flatten(files: &[SceneFile], bases: &[u32], limits: &Limits, sink: &mut S
     let mut flattener = Flattener { files, bases, limits, flat, groups: vec![root], opened: Vec::new() };
     for step in Walk::new(files, limits.steps) {
         let fault = match step {
-            Ok(step) => flattener.take(step, sink).map_err(too_many),
+            Ok(step) => flattener.take(step, sink).map_err(|(what, option)| too_many(&what, option)),
             Err(error) => Err(walk_fault(files, error)),
         };
         if let Err(fault) = fault {
@@ -69,7 +69,7 @@ struct Flattener<'a> {
 
 impl Flattener<'_> {
     /// The error says what there is too much of.
-    fn take(&mut self, step: Step, sink: &mut Sink) -> Result<(), String> {
+    fn take(&mut self, step: Step, sink: &mut Sink) -> Result<(), (String, &'static str)> {
         match step {
             Step::OpenGroup { file, group } => {
                 self.open_group(file, group, sink);
@@ -112,17 +112,23 @@ impl Flattener<'_> {
         self.opened.push((placed.map(|placed| placed.span).unwrap_or_default(), "inside this group"));
     }
 
-    fn add_run(&mut self, file: FileId, kind: ShapeKind, first: u32, count: u32) -> Result<(), String> {
+    fn add_run(
+        &mut self,
+        file: FileId,
+        kind: ShapeKind,
+        first: u32,
+        count: u32,
+    ) -> Result<(), (String, &'static str)> {
         let Some(group) = self.groups.last_mut() else { return Ok(()) };
         let Some(transform) = group.transform else { return Ok(()) };
         if self.flat.runs.len() as u64 >= self.limits.runs {
-            return Err(format!("more than {} runs of shapes", self.limits.runs));
+            return Err((format!("more than {} runs of shapes", self.limits.runs), "--max-groups"));
         }
         let shape_count = u64::from(self.flat.shape_count) + u64::from(count);
         let most = self.limits.shapes.min(u64::from(u32::MAX));
         let Some(shape_count) = u32::try_from(shape_count).ok().filter(|count| u64::from(*count) <= most)
         else {
-            return Err(format!("more than {most} shapes"));
+            return Err((format!("more than {most} shapes"), "--max-shapes"));
         };
         let frames = &mut self.flat.frames;
         let frame = *group.frame.get_or_insert_with(|| {
@@ -132,7 +138,8 @@ impl Flattener<'_> {
         let material_base = self.bases.get(file.0 as usize).copied().unwrap_or(0);
         let first_shape = self.flat.shape_count;
         self.flat.tree.push(TreeEvent::Run(self.flat.runs.len() as u32));
-        self.flat.runs.push(Run { file, kind, first, count, frame, material_base, first_shape });
+        let colors = self.files.get(file.0 as usize).and_then(|file| file.colors_from(kind, first));
+        self.flat.runs.push(Run { file, kind, first, count, frame, material_base, first_shape, colors });
         self.flat.shape_count = shape_count;
         Ok(())
     }
@@ -173,7 +180,7 @@ fn walk_fault(files: &[SceneFile], fault: WalkError) -> Diagnostic {
             error.at(span).label("leads back to a file around it")
         }
         WalkError::TooLong(limit) => {
-            too_many(format!("more than {limit} groups, instances and runs of shapes"))
+            too_many(&format!("more than {limit} groups, instances and runs of shapes"), "--max-groups")
         }
         WalkError::Broken { file, .. } => {
             Diagnostic::error("broken-scene", fault.to_string()).at(Span { file, start: 0, end: 0 })
@@ -181,6 +188,7 @@ fn walk_fault(files: &[SceneFile], fault: WalkError) -> Diagnostic {
     }
 }
 
-fn too_many(what: String) -> Diagnostic {
-    Diagnostic::error("too-many-shapes", format!("the scene's instances multiply to {what}"))
+fn too_many(what: &str, option: &str) -> Diagnostic {
+    let error = Diagnostic::error("too-many-shapes", format!("the scene's instances multiply to {what}"));
+    error.help(format!("`{option} N` allows more"))
 }

@@ -106,6 +106,7 @@ fn groups_share_one_frame_each() {
         frame,
         material_base: 0,
         first_shape,
+        colors: None,
     };
     let expected = [
         run(ShapeKind::Sphere, 0, 1, 0, 0),

@@ -1,0 +1,239 @@
+"""Pictures on many workers: the same bytes as on one machine, whatever is lost on the way."""
+
+import json
+import multiprocessing
+import os
+import pickle
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from engines import Dask, count_loads, loads_so_far
+from many_hosts import film, scene
+
+import dotray
+from dotray import cluster
+
+HERE = Path(__file__).parent
+OPTIONS = {"aa": "adaptive", "layers": ["depth", "normal"]}
+
+
+@pytest.fixture(scope="module")
+def expected():
+    return scene().render(200, 150, **OPTIONS)
+
+
+@pytest.fixture(scope="module")
+def dask():
+    with Dask() as engine:
+        engine.add_worker()
+        engine.add_worker()
+        yield engine.client(2)
+
+
+def check(image, expected):
+    assert (image.numpy() == expected.numpy()).all()
+    assert set(image.layers) == set(expected.layers)
+    for name, layer in expected.layers.items():
+        assert (image.layers[name] == layer).all()
+
+
+def processes():
+    return ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn"))
+
+
+@pytest.mark.parametrize("engine", ["threads", "processes", "dask", "client"])
+def test_every_engine_gives_the_same_bytes(engine, expected, request):
+    if engine in ("dask", "client"):
+        client = request.getfixturevalue("dask")
+        executor = client if engine == "client" else client.get_executor(pure=False, retries=3)
+        check(scene().render(200, 150, executor=executor, **OPTIONS), expected)
+        return
+    with ThreadPoolExecutor(3) if engine == "threads" else processes() as executor:
+        check(scene().render(200, 150, executor=executor, **OPTIONS), expected)
+        crop = (10, 20, 90, 70)
+        part = cluster.render(scene(), 200, 150, executor=executor, crop=crop, piece=32, **OPTIONS)
+        assert (part.numpy() == expected.numpy()[20:90, 10:100]).all()
+
+
+def test_the_scene_reaches_each_worker_once(dask):
+    cluster.render(scene(), 200, 150, executor=dask, piece=32)
+    dask.run(count_loads)
+    made = scene()
+    made.add_boxes([0.5, 0.5, 0.5], 0.1)
+    cluster.render(made, 200, 150, executor=dask, piece=32)
+    loads = dask.run(loads_so_far)
+    assert len(loads) == 2 and set(loads.values()) <= {0, 1} and 1 in loads.values(), loads
+
+
+class Unreliable(Executor):
+    """Every third task is lost, and the first ones find no file."""
+
+    def __init__(self, losses=1000):
+        self.submitted, self.losses = 0, losses
+        self.with_scene = 0
+
+    def submit(self, function, scene_, piece):
+        future = Future()
+        self.submitted += 1
+        if scene_.content is None:
+            scene_ = cluster._Travelling(scene_.key, "/nowhere/at/all")
+        else:
+            self.with_scene += 1
+        try:
+            if self.submitted % 3 == 0 and self.losses:
+                self.losses -= 1
+                raise ConnectionResetError("gone")
+            future.set_result(function(scene_, piece))
+        except Exception as fault:
+            future.set_exception(fault)
+        return future
+
+
+def test_lost_pieces_are_computed_again(expected):
+    cluster._worlds.clear()
+    executor = Unreliable()
+    check(cluster.render(scene(), 200, 150, executor=executor, piece=32, retries=8, **OPTIONS), expected)
+    assert executor.with_scene > 0, "who cannot read the file is sent the scene"
+    cluster._worlds.clear()
+    with pytest.raises(cluster.LostWork, match="lost too often: gone"):
+        cluster.render(scene(), 200, 150, executor=Unreliable(), piece=32, retries=0)
+
+
+def test_faults_of_the_caller_are_not_tried_again(expected):
+    executor = Unreliable(0)
+    with pytest.raises(ValueError, match="aa is"):
+        cluster.render(scene(), 200, 150, executor=executor, aa="smooth")
+    assert executor.submitted < 10
+    for arguments, message in [
+        ({"piece": 40}, "multiple of 32"),
+        ({"retries": -1}, "retries"),
+        ({"piece": 8}, "piece"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            cluster.render(scene(), 200, 150, executor=executor, **arguments)
+
+
+def test_pieces_go_to_disk_and_are_found_again(expected, tmp_path):
+    class Counting(ThreadPoolExecutor):
+        submitted = 0
+
+        def submit(self, *arguments):
+            self.submitted += 1
+            if self.submitted > self.most:
+                raise KeyboardInterrupt
+            return super().submit(*arguments)
+
+    with Counting(1) as executor:
+        executor.most = 20
+        with pytest.raises(KeyboardInterrupt):
+            cluster.render(scene(), 200, 150, executor=executor, directory=tmp_path, piece=32, **OPTIONS)
+    with Counting(1) as executor:
+        executor.most = 7
+        arguments = {"executor": executor, "directory": tmp_path, "piece": 64, **OPTIONS}
+        with pytest.raises(KeyboardInterrupt):
+            cluster.render(scene(), 200, 150, **arguments)
+    with Counting(1) as executor:
+        executor.most = 1000
+        check(cluster.render(scene(), 200, 150, executor=executor, directory=tmp_path, piece=64, **OPTIONS), expected)
+        first = executor.submitted
+        check(cluster.render(scene(), 200, 150, executor=executor, directory=tmp_path, piece=64, **OPTIONS), expected)
+        assert first == 12 and executor.submitted == first, "the second time all pieces are there"
+        cluster.render(scene(), 200, 150, executor=executor, directory=tmp_path, piece=64, aa=2)
+        assert executor.submitted == 24, "other options are another picture"
+    assert not list(tmp_path.glob("*.scene")) and len(list(tmp_path.glob("*.piece"))) == 24
+
+
+def test_frames_that_are_there_are_left(tmp_path):
+    with ThreadPoolExecutor(2) as executor:
+        first, _ = film(executor, tmp_path)
+        (tmp_path / "03.png").unlink()
+        (tmp_path / "04.png").write_bytes(b"mine")
+        again, _ = film(executor, tmp_path)
+    assert again[4] == b"mine" and again[:4] == first[:4] and again[5:] == first[5:]
+    with pytest.raises(ValueError, match="a place for the frame's number"):
+        cameras = [dotray.Camera((0, 0, 5), (0, 0, -1))] * 2
+        cluster.frames(scene(), cameras, str(tmp_path / "all.png"), 8, 8, executor=ThreadPoolExecutor(1))
+
+
+def test_a_pool_that_breaks_is_made_again(tmp_path):
+    pools = []
+
+    def make():
+        pools.append(processes())
+        return pools[-1]
+
+    def kill():
+        os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
+
+    with ThreadPoolExecutor(2) as executor:
+        quiet, _ = film(executor, tmp_path / "quiet")
+    disturbed, _ = film(make, tmp_path / "disturbed", kill)
+    assert disturbed == quiet and len(pools) > 1
+    with processes() as broken:
+        pools[:] = [broken]
+        with pytest.raises(cluster.LostWork, match="give a function that makes one|lost too often"):
+            film(broken, tmp_path / "broken", kill)
+
+
+def test_a_killed_worker_of_dask_loses_nothing(tmp_path, capsys):
+    with Dask() as engine:
+        workers = [engine.add_worker("--no-nanny") for _ in range(2)]
+        client = engine.client(2)
+        quiet, quiet_seconds = film(client, tmp_path / "quiet")
+        disturbed, seconds = film(client, tmp_path / "disturbed", lambda: os.kill(workers[1].pid, signal.SIGKILL))
+    assert disturbed == quiet
+    with capsys.disabled():
+        print(f"\n  one of two workers killed: 24 of 24 frames, {seconds:.1f} s ({quiet_seconds:.1f} s undisturbed)")
+
+
+def namespaces():
+    """Whether this machine lets us make networks of our own."""
+    if not (shutil.which("unshare") and shutil.which("ip")):
+        return False
+    script = "ip link add cable2 type veth peer name eth0 && ip link add switch type bridge"
+    command = ["unshare", "-n", "-m", "-p", "-f", "--mount-proc", "sh", "-c", script]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+@pytest.mark.parametrize("how", ["host", "cable"])
+def test_a_lost_host_and_a_pulled_cable_lose_nothing(how, tmp_path, capsys):
+    if not namespaces():
+        pytest.skip("no network namespaces on this machine")
+    command = ["unshare", "-n", "-m", "-p", "-f", "--mount-proc", "--kill-child", sys.executable]
+    start = time.monotonic()
+    done = subprocess.run(
+        [*command, str(HERE / "many_hosts.py"), how, str(tmp_path)], capture_output=True, text=True, timeout=400,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["same"]
+    with capsys.disabled():
+        print(
+            f"\n  {how} lost: 24 of 24 frames, {found['disturbed']:.1f} s ({found['quiet']:.1f} s undisturbed), "
+            f"{time.monotonic() - start:.0f} s in all"
+        )
+
+
+def test_a_scene_travels_with_what_it_needs(tmp_path):
+    (tmp_path / "part.ray").write_text(
+        "#texture t.png\n#material 1 1 1 1 1 1 0 0 0 0 0 0 0 0 1 0 !!\n#shape_box 0 0 0 0 2 2 2"
+    )
+    (tmp_path / "main.ray").write_text(
+        "#camera 0 0 9 0 0 -1 0 1 0 .2 #light_point 1 1 1 5 5 5 1 0 0 #ray_file part.ray #ray_file_instance 0"
+    )
+    dotray.Image(np.random.default_rng(0).random((4, 4, 3))).save(tmp_path / "t.png")
+    loaded = dotray.load(tmp_path / "main.ray")
+    loaded.add_spheres([0, 1, 1], 0.5, material=dotray.Material(texture=np.random.default_rng(1).random((4, 4, 3))))
+    expected = loaded.render(64, 48).numpy()
+    content = pickle.dumps(loaded)
+    for file in tmp_path.iterdir():
+        file.unlink()
+    assert (pickle.loads(content).render(64, 48).numpy() == expected).all()

@@ -1,0 +1,441 @@
+// The scene as the slides' rayview shows it: the formula of shading without shadows, mirrored and refracted rays.
+//
+// Coordinates are those of the view's frame: the scene's centre is the origin and the scene reaches to about 1. Round
+// shapes are quads on the screen whose fragments cast a ray, so their silhouettes are exact at any distance.
+
+struct View {
+    // Eye; the world's length of the view's 1.
+    eye: vec4<f32>,
+    // Right and the tangent of half the horizontal angle; up and that of the vertical one.
+    right: vec4<f32>,
+    up: vec4<f32>,
+    // Ahead; the distance of the near plane.
+    ahead: vec4<f32>,
+    ambient: vec4<f32>,
+    // The number of lights; texels in a row of the tables.
+    counts: vec4<u32>,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(1) var materials: texture_2d<f32>;
+@group(0) @binding(2) var lights: texture_2d<f32>;
+@group(0) @binding(3) var pictures: texture_2d_array<f32>;
+@group(0) @binding(4) var picture_sampler: sampler;
+
+const NEVER: f32 = 3.0e38;
+
+// ---- from the frame to the screen: depth is near / distance, 1 at the near plane and 0 at infinity
+
+fn in_camera(point: vec3<f32>) -> vec3<f32> {
+    let p = point - view.eye.xyz;
+    return vec3<f32>(dot(p, view.right.xyz), dot(p, view.up.xyz), dot(p, view.ahead.xyz));
+}
+
+fn clip(point: vec3<f32>) -> vec4<f32> {
+    let p = in_camera(point);
+    return vec4<f32>(p.x / view.right.w, p.y / view.up.w, view.ahead.w, p.z);
+}
+
+fn depth_at(ray: vec3<f32>, t: f32) -> f32 {
+    return clamp(view.ahead.w / (t * dot(ray, view.ahead.xyz)), 0.0, 1.0);
+}
+
+// The ray through a place of the screen, 1 ahead of the eye.
+fn ray_at(place: vec2<f32>) -> vec3<f32> {
+    return view.ahead.xyz + view.right.xyz * (place.x * view.right.w) + view.up.xyz * (place.y * view.up.w);
+}
+
+// ---- shading
+
+fn row_of(table: texture_2d<f32>, number: u32, part: u32) -> vec4<f32> {
+    let texel = number * 4u + part;
+    return textureLoad(table, vec2<u32>(texel % view.counts.y, texel / view.counts.y), 0);
+}
+
+fn power(base: f32, exponent: f32) -> f32 {
+    if (exponent == 0.0) { return 1.0; }
+    if (base <= 0.0) { return 0.0; }
+    return pow(base, exponent);
+}
+
+fn shade(point: vec3<f32>, ray: vec3<f32>, outward: vec3<f32>, st: vec2<f32>, material: u32) -> vec4<f32> {
+    let d = normalize(ray);
+    var n = normalize(outward);
+    if (dot(n, d) > 0.0) { n = -n; }
+    let ambient = row_of(materials, material, 0u);
+    let diffuse = row_of(materials, material, 1u);
+    let specular = row_of(materials, material, 2u);
+    let emissive = row_of(materials, material, 3u);
+    let layer = max(i32(diffuse.w), 0);
+    var texel = textureSampleLevel(pictures, picture_sampler, st, layer, 0.0).rgb;
+    if (diffuse.w < 0.0) { texel = vec3<f32>(1.0); }
+    var color = emissive.rgb + ambient.rgb * view.ambient.rgb * texel;
+    let mirrored = reflect(d, n);
+    for (var i = 0u; i < view.counts.x; i++) {
+        let head = row_of(lights, i, 0u);
+        let place = row_of(lights, i, 1u);
+        let axis = row_of(lights, i, 2u);
+        let fading = row_of(lights, i, 3u);
+        var towards = -axis.xyz;
+        var strength = 1.0;
+        if (head.w != 2.0) {
+            let offset = place.xyz - point;
+            let distance = length(offset);
+            towards = offset / max(distance, 1e-20);
+            let far = distance * view.eye.w;
+            let sum = fading.x + fading.y * far + fading.z * far * far;
+            if (sum > 0.0) { strength = 1.0 / sum; }
+            let cosine = -dot(towards, axis.xyz);
+            if (head.w == 1.0) {
+                if (cosine < place.w) { strength = 0.0; } else { strength *= power(max(cosine, 0.0), axis.w); }
+            }
+            if (head.w == 3.0 && cosine <= 0.0) { strength = 0.0; }
+        }
+        let facing = dot(n, towards);
+        if (facing > 0.0 && strength > 0.0) {
+            let highlight = power(max(dot(mirrored, towards), 0.0), ambient.w);
+            color += head.rgb * strength * (diffuse.rgb * texel * facing + specular.rgb * highlight);
+        }
+    }
+    if (emissive.w > 0.0) { color *= texel; }
+    return vec4<f32>(clamp(color, vec3<f32>(0.0), vec3<f32>(1.0)), 1.0);
+}
+
+// Texture coordinates around the y axis; the seam is at -z.
+fn around(p: vec3<f32>) -> f32 {
+    return atan2(p.x, p.z) / 6.283185307179586 + 0.5;
+}
+
+struct Fragment {
+    @location(0) color: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+fn corner_of(vertex: u32, low: vec2<f32>, high: vec2<f32>) -> vec2<f32> {
+    let a = vec2<f32>(f32(vertex & 1u), f32(vertex >> 1u));
+    return clamp(mix(low, high, a), vec2<f32>(-1.0), vec2<f32>(1.0));
+}
+
+const NOWHERE: vec4<f32> = vec4<f32>(2.0, 2.0, 0.5, 1.0);
+
+// ---- spheres
+
+struct Ball {
+    @builtin(position) position: vec4<f32>,
+    @location(0) place: vec2<f32>,
+    @location(1) @interpolate(flat, either) center: vec4<f32>,
+    @location(2) @interpolate(flat, either) material: u32,
+}
+
+// Where the silhouette ends along one axis of the screen: the two tangents from the eye to a circle.
+fn tangents(across: f32, ahead: f32, r: f32) -> vec2<f32> {
+    let square = sqrt(max(across * across + ahead * ahead - r * r, 0.0));
+    return vec2<f32>(across * ahead - r * square, across * ahead + r * square) / (ahead * ahead - r * r);
+}
+
+@vertex
+fn ball_vertex(@builtin(vertex_index) vertex: u32, @location(0) ball: vec4<f32>, @location(1) material: u32) -> Ball {
+    let c = in_camera(ball.xyz);
+    let r = ball.w;
+    var low = vec2<f32>(-1.0);
+    var high = vec2<f32>(1.0);
+    if (c.z > r * 1.0001) {
+        // A little more than the exact silhouette, for the sake of rounding.
+        let x = tangents(c.x, c.z, r * 1.0001) / view.right.w;
+        let y = tangents(c.y, c.z, r * 1.0001) / view.up.w;
+        low = vec2<f32>(x.x, y.x);
+        high = vec2<f32>(x.y, y.y);
+    }
+    var out: Ball;
+    out.place = corner_of(vertex, low, high);
+    out.position = vec4<f32>(out.place, 0.5, 1.0);
+    if (c.z < -r) { out.position = NOWHERE; }
+    out.center = vec4<f32>(ball.xyz - view.eye.xyz, r);
+    out.material = material;
+    return out;
+}
+
+@fragment
+fn ball_fragment(in: Ball) -> Fragment {
+    let ray = ray_at(in.place);
+    let square = dot(ray, ray);
+    let middle = dot(ray, in.center.xyz) / square;
+    let nearest = in.center.xyz - ray * middle;
+    let depth = in.center.w * in.center.w - dot(nearest, nearest);
+    if (depth < 0.0) { discard; }
+    let half = sqrt(depth / square);
+    var t = middle - half;
+    if (t < view.ahead.w) { t = middle + half; }
+    if (t < view.ahead.w) { discard; }
+    let from_eye = ray * t;
+    var out: Fragment;
+    out.color = shade(view.eye.xyz + from_eye, ray, from_eye - in.center.xyz, vec2<f32>(0.0), in.material);
+    out.depth = depth_at(ray, t);
+    return out;
+}
+
+// ---- other round shapes: images of unit shapes
+
+struct Solid {
+    @builtin(position) position: vec4<f32>,
+    @location(0) place: vec2<f32>,
+    // The rows of unit_from_view; their fourth numbers are the eye in the unit shape's coordinates.
+    @location(1) @interpolate(flat, either) x: vec4<f32>,
+    @location(2) @interpolate(flat, either) y: vec4<f32>,
+    @location(3) @interpolate(flat, either) z: vec4<f32>,
+    @location(4) @interpolate(flat, either) which: vec2<u32>,
+}
+
+@vertex
+fn solid_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @location(0) x: vec4<f32>,
+    @location(1) y: vec4<f32>,
+    @location(2) z: vec4<f32>,
+    @location(3) material: u32,
+    @location(4) unit: u32,
+) -> Solid {
+    var low = vec2<f32>(1.0);
+    var high = vec2<f32>(-1.0);
+    var behind = 0;
+    for (var i = 0u; i < 8u; i++) {
+        let u = vec4<f32>(vec3<f32>(f32(i & 1u), f32(i >> 1u & 1u), f32(i >> 2u)) * 2.0 - 1.0, 1.0);
+        let c = in_camera(vec3<f32>(dot(x, u), dot(y, u), dot(z, u)));
+        if (c.z < view.ahead.w) {
+            behind += 1;
+        } else {
+            let p = c.xy / (c.z * vec2<f32>(view.right.w, view.up.w));
+            low = min(low, p);
+            high = max(high, p);
+        }
+    }
+    if (behind > 0) {
+        low = vec2<f32>(-1.0);
+        high = vec2<f32>(1.0);
+    }
+    // The inverse from the cross products of the columns.
+    let a = vec3<f32>(x.x, y.x, z.x);
+    let b = vec3<f32>(x.y, y.y, z.y);
+    let c = vec3<f32>(x.z, y.z, z.z);
+    let determinant = dot(a, cross(b, c));
+    let rx = cross(b, c) / determinant;
+    let ry = cross(c, a) / determinant;
+    let rz = cross(a, b) / determinant;
+    let eye = view.eye.xyz - vec3<f32>(x.w, y.w, z.w);
+    var out: Solid;
+    out.place = corner_of(vertex, low - 1e-5, high + 1e-5);
+    out.position = vec4<f32>(out.place, 0.5, 1.0);
+    if (behind == 8) { out.position = NOWHERE; }
+    out.x = vec4<f32>(rx, dot(rx, eye));
+    out.y = vec4<f32>(ry, dot(ry, eye));
+    out.z = vec4<f32>(rz, dot(rz, eye));
+    out.which = vec2<u32>(material, unit);
+    return out;
+}
+
+// What a ray meets first: t, the unit shape's normal, and its face (0 side, 1 top, 2 bottom).
+struct Meeting {
+    t: f32,
+    face: u32,
+}
+
+fn nearer(best: Meeting, t: f32, low: f32, counts: bool, face: u32) -> Meeting {
+    var next = best;
+    if (counts && t > low && t < best.t) {
+        next.t = t;
+        next.face = face;
+    }
+    return next;
+}
+
+fn meet(o: vec3<f32>, d: vec3<f32>, low: f32, unit: u32) -> Meeting {
+    var best = Meeting(NEVER, 0u);
+    // The radius at height y is e + f y.
+    let cone = unit == 2u || unit == 4u;
+    var e = vec2<f32>(1.0, 0.0);
+    if (cone) { e = vec2<f32>((1.0 - o.y) * 0.5, -d.y * 0.5); }
+    var a = dot(d.xz, d.xz);
+    var b = dot(o.xz, d.xz);
+    var c = dot(o.xz, o.xz) - e.x * e.x;
+    if (cone) {
+        a -= e.y * e.y;
+        b -= e.x * e.y;
+    }
+    if (unit == 0u) {
+        a += d.y * d.y;
+        b += o.y * d.y;
+        c += o.y * o.y;
+    }
+    let root = b * b - a * c;
+    if (root >= 0.0) {
+        // Both roots without cancellation; a double cone's other half lies above y = 1.
+        let q = -(b + select(-1.0, 1.0, b >= 0.0) * sqrt(root));
+        let t0 = q / a;
+        let t1 = c / q;
+        best = nearer(best, t0, low, unit == 0u || abs(o.y + d.y * t0) <= 1.0, 0u);
+        best = nearer(best, t1, low, unit == 0u || abs(o.y + d.y * t1) <= 1.0, 0u);
+    }
+    if (unit == 1u || unit == 2u) {
+        let bottom = (-1.0 - o.y) / d.y;
+        let at = o.xz + d.xz * bottom;
+        best = nearer(best, bottom, low, dot(at, at) <= 1.0, 2u);
+    }
+    if (unit == 1u) {
+        let top = (1.0 - o.y) / d.y;
+        let at = o.xz + d.xz * top;
+        best = nearer(best, top, low, dot(at, at) <= 1.0, 1u);
+    }
+    return best;
+}
+
+fn unit_normal(p: vec3<f32>, unit: u32, face: u32) -> vec3<f32> {
+    if (face == 1u) { return vec3<f32>(0.0, 1.0, 0.0); }
+    if (face == 2u) { return vec3<f32>(0.0, -1.0, 0.0); }
+    if (unit == 0u) { return p; }
+    if (unit == 1u || unit == 3u) { return vec3<f32>(p.x, 0.0, p.z); }
+    return vec3<f32>(p.x, (1.0 - p.y) * 0.25, p.z);
+}
+
+fn unit_texture(p: vec3<f32>, unit: u32, face: u32) -> vec2<f32> {
+    if (face == 1u) { return vec2<f32>(p.x + 1.0, p.z + 1.0) * 0.5; }
+    if (face == 2u) { return vec2<f32>(p.x + 1.0, 1.0 - p.z) * 0.5; }
+    if (unit == 0u) { return vec2<f32>(around(p), acos(clamp(p.y, -1.0, 1.0)) / 3.141592653589793); }
+    return vec2<f32>(around(p), (1.0 - p.y) * 0.5);
+}
+
+@fragment
+fn solid_fragment(in: Solid) -> Fragment {
+    let ray = ray_at(in.place);
+    let d = vec3<f32>(dot(in.x.xyz, ray), dot(in.y.xyz, ray), dot(in.z.xyz, ray));
+    let eye = vec3<f32>(in.x.w, in.y.w, in.z.w);
+    // From the place nearest to the shape's centre, lest small shapes far away drown in rounding.
+    let ahead = -dot(eye, d) / dot(d, d);
+    let o = eye + d * ahead;
+    let met = meet(o, d, view.ahead.w - ahead, in.which.y);
+    if (met.t == NEVER) { discard; }
+    let p = o + d * met.t;
+    let n = unit_normal(p, in.which.y, met.face);
+    let normal = in.x.xyz * n.x + in.y.xyz * n.y + in.z.xyz * n.z;
+    let t = met.t + ahead;
+    var out: Fragment;
+    let st = unit_texture(p, in.which.y, met.face);
+    out.color = shade(view.eye.xyz + ray * t, ray, normal, st, in.which.x);
+    out.depth = depth_at(ray, t);
+    return out;
+}
+
+// ---- boxes: the three faces towards the eye, or all far ones from inside
+
+struct Surface {
+    @builtin(position) position: vec4<f32>,
+    @location(0) point: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) st: vec2<f32>,
+    @location(3) @interpolate(flat, either) material: u32,
+}
+
+fn box_texture(u: vec3<f32>, axis: u32, positive: bool) -> vec2<f32> {
+    let s = select(-1.0, 1.0, positive);
+    if (axis == 0u) { return vec2<f32>(-s * u.z, -u.y) * 0.5 + 0.5; }
+    if (axis == 1u) { return vec2<f32>(u.x, s * u.z) * 0.5 + 0.5; }
+    return vec2<f32>(s * u.x, -u.y) * 0.5 + 0.5;
+}
+
+@vertex
+fn box_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @location(0) x: vec4<f32>,
+    @location(1) y: vec4<f32>,
+    @location(2) z: vec4<f32>,
+    @location(3) material: u32,
+) -> Surface {
+    let a = vec3<f32>(x.x, y.x, z.x);
+    let b = vec3<f32>(x.y, y.y, z.y);
+    let c = vec3<f32>(x.z, y.z, z.z);
+    let mirrored = select(1.0, -1.0, dot(a, cross(b, c)) < 0.0);
+    let normals = mat3x3<f32>(cross(b, c) * mirrored, cross(c, a) * mirrored, cross(a, b) * mirrored);
+    let eye = view.eye.xyz - vec3<f32>(x.w, y.w, z.w);
+    // How far the eye is out, in the unit box's coordinates.
+    let size = max(abs(dot(a, cross(b, c))), 1e-37);
+    let out_by = vec3<f32>(dot(normals[0], eye), dot(normals[1], eye), dot(normals[2], eye)) / size;
+    let inside = all(abs(out_by) < vec3<f32>(1.0));
+    let axis = vertex / 6u;
+    let toward = select(out_by.z, select(out_by.y, out_by.x, axis == 0u), axis < 2u) >= 0.0;
+    let positive = toward != inside;
+    let sign = select(-1.0, 1.0, positive);
+    let step = vertex % 6u;
+    // Two triangles: 0 1 2, 2 1 3.
+    let corner = select(step, select(1u, 3u, step == 5u), step > 3u);
+    let at = select(corner, 2u, step == 3u);
+    let p = f32(at & 1u) * 2.0 - 1.0;
+    let q = f32(at >> 1u) * 2.0 - 1.0;
+    var u = vec3<f32>(sign, p, q);
+    var normal = normals[0];
+    if (axis == 1u) {
+        u = vec3<f32>(p, sign, q);
+        normal = normals[1];
+    }
+    if (axis == 2u) {
+        u = vec3<f32>(p, q, sign);
+        normal = normals[2];
+    }
+    let h = vec4<f32>(u, 1.0);
+    var out: Surface;
+    out.point = vec3<f32>(dot(x, h), dot(y, h), dot(z, h));
+    out.position = clip(out.point);
+    out.normal = normalize(normal) * sign;
+    out.st = box_texture(u, axis, positive);
+    out.material = material;
+    return out;
+}
+
+// ---- triangles
+
+@vertex
+fn corner_vertex(
+    @location(0) point: vec3<f32>,
+    @location(1) folded: vec2<f32>,
+    @location(2) st: vec2<f32>,
+    @location(3) material: u32,
+) -> Surface {
+    let z = 1.0 - abs(folded.x) - abs(folded.y);
+    let fold = max(-z, 0.0);
+    let xy = folded - select(vec2<f32>(-fold), vec2<f32>(fold), folded >= vec2<f32>(0.0));
+    var out: Surface;
+    out.point = point;
+    out.position = clip(point);
+    out.normal = vec3<f32>(xy, z);
+    out.st = st;
+    out.material = material;
+    return out;
+}
+
+@fragment
+fn surface_fragment(in: Surface) -> @location(0) vec4<f32> {
+    return shade(in.point, in.point - view.eye.xyz, in.normal, in.st, in.material);
+}
+
+// ---- lines
+
+struct Line {
+    @builtin(position) position: vec4<f32>,
+    @location(0) color: vec4<f32>,
+}
+
+@vertex
+fn line_vertex(@location(0) point: vec3<f32>, @location(1) color: vec4<f32>) -> Line {
+    var out: Line;
+    out.position = clip(point);
+    out.color = color;
+    return out;
+}
+
+@fragment
+fn line_fragment(in: Line) -> @location(0) vec4<f32> {
+    return vec4<f32>(in.color.rgb * in.color.a, in.color.a);
+}
+
+@fragment
+fn faint_fragment(in: Line) -> @location(0) vec4<f32> {
+    return vec4<f32>(in.color.rgb, 1.0) * (in.color.a * 0.3);
+}

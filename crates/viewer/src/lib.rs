@@ -1,0 +1,53 @@
+//! rayview: a scene on the screen, rasterised at once and then traced.
+//!
+//! What stands here without the feature `screen` needs no window and no GPU: the camera under the hand,
+//! shapes laid down as a GPU wants them, the tree and its search, editing numbers in the text, tracing from coarse to
+//! fine, and the rays of a pixel as lines. The feature adds what draws and what listens.
+//!
+//! The order of the `mod` lines is the floor order: a module uses only modules listed above it.
+
+pub mod navigate;
+
+pub mod edit;
+
+pub mod hidden;
+
+pub mod pictures;
+
+pub mod tables;
+
+pub mod pack;
+
+pub mod outline;
+
+pub mod document;
+
+pub mod rays;
+
+pub mod passes;
+
+pub mod engine;
+
+#[cfg(feature = "screen")]
+pub mod gpu;
+
+#[cfg(feature = "screen")]
+pub mod link;
+
+#[cfg(feature = "screen")]
+pub mod host;
+
+#[cfg(feature = "screen")]
+pub mod state;
+
+#[cfg(feature = "screen")]
+pub mod panels;
+
+#[cfg(feature = "screen")]
+pub mod viewport;
+
+#[cfg(feature = "screen")]
+pub mod watch;
+
+#[cfg(feature = "screen")]
+pub mod app;

@@ -1,0 +1,7 @@
+//! rayview: the scene on the screen.
+
+mod native;
+
+fn main() -> std::process::ExitCode {
+    native::main()
+}

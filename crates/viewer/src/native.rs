@@ -1,0 +1,58 @@
+//! The window on a desktop.
+
+use clap::Parser;
+use eframe::egui;
+use rayview::app::App;
+use rayview::app::Start;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Shows a scene in a window: rasterised at once, then traced.
+#[derive(Debug, Parser)]
+#[command(name = "rayview", version, about)]
+struct Args {
+    /// The scene, a .ray file.
+    scene: Option<PathBuf>,
+    /// Trace at once.
+    #[arg(long)]
+    traced: bool,
+    /// Trace whenever the camera has come to rest.
+    #[arg(long)]
+    trace_at_rest: bool,
+    /// The window's size in points.
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = window_size)]
+    window: [f32; 2],
+}
+
+fn window_size(text: &str) -> Result<[f32; 2], String> {
+    let parts =
+        text.split_once('x').and_then(|(w, h)| Some([w.parse::<u16>().ok()?, h.parse::<u16>().ok()?]));
+    let fine = parts.filter(|parts| parts.iter().all(|edge| *edge >= 100));
+    fine.map(|parts| parts.map(f32::from))
+        .ok_or_else(|| "expected such as 1280x800, at least 100x100".to_owned())
+}
+
+/// Opens it.
+pub fn main() -> ExitCode {
+    let args = Args::parse();
+    let title =
+        args.scene.as_ref().map_or("rayview".to_owned(), |path| format!("{} – rayview", path.display()));
+    let options = eframe::NativeOptions {
+        // What is traced stands on the screen as it is.
+        dithering: false,
+        viewport: egui::ViewportBuilder::default().with_inner_size(args.window).with_title(&title),
+        ..Default::default()
+    };
+    let start = Start { scene: args.scene, traced: args.traced, trace_at_rest: args.trace_at_rest };
+    let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, &start))));
+    match eframe::run_native("rayview", options, create) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("rayview: cannot open a window: {error}");
+            eprintln!(
+                "rayview: without a display, `Xvfb` gives one; without a GPU, Mesa's software drivers do"
+            );
+            ExitCode::FAILURE
+        }
+    }
+}

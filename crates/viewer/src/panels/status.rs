@@ -1,0 +1,42 @@
+//! The line below: what is shown, by what, and what lies under the pointer.
+
+use crate::state::State;
+use eframe::egui;
+use eframe::egui::Ui;
+
+pub fn show(ui: &mut Ui, state: &State) {
+    ui.horizontal(|ui| {
+        let device = state.raster.as_ref().map_or_else(String::new, |raster| raster.device_name());
+        ui.label(device).on_hover_text("What draws the preview");
+        ui.separator();
+        if let Some(document) = &state.document {
+            let name = document.path.file_name().unwrap_or(document.path.as_os_str()).to_string_lossy();
+            ui.label(format!("{name}: {} shapes", document.shape_count));
+            ui.separator();
+        }
+        ui.label(format!("{} × {}", state.size[0], state.size[1]));
+        ui.separator();
+        ui.label(traced(state));
+        if let Some((seen, document)) = state.hovered.zip(state.document.as_ref()) {
+            ui.separator();
+            let material = super::rays::material_name(document, seen.material);
+            ui.label(format!("{} · {material}", document.shape_name(seen.number)));
+        }
+        if !state.notice.is_empty() {
+            ui.separator();
+            ui.add(egui::Label::new(&state.notice).truncate());
+        }
+    });
+}
+
+/// How far the traced picture has come.
+fn traced(state: &State) -> String {
+    if state.document.is_some() && !state.prepared {
+        return "preparing to trace …".to_owned();
+    }
+    match &state.traced {
+        Some(traced) if traced.image.is_some() => format!("traced in {:.2} s", traced.seconds),
+        Some(traced) => format!("tracing: {:.0} %", traced.done * 100.0),
+        None => "preview".to_owned(),
+    }
+}

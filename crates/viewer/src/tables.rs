@@ -1,0 +1,105 @@
+//! Materials and lights as rows of four numbers, which a shader reads from a texture: so their number has no limit.
+
+use dotray_geometry::Vec3;
+use dotray_scene::model::Attenuation;
+use dotray_scene::model::Light;
+use dotray_scene::resolved::ResolvedMaterial;
+
+/// Texels a material or a light takes.
+pub const TEXELS: usize = 4;
+
+/// Texels a row of the table has.
+pub const WIDTH: usize = 1024;
+
+/// The frame that the GPU computes in: the scene's centre is its origin, and the scene reaches to about 1. So single
+/// precision serves scenes of any size at any place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewFrame {
+    /// The scene's centre in the world.
+    pub center: Vec3,
+    /// The world's length of the view's 1.
+    pub unit: f64,
+}
+
+impl ViewFrame {
+    /// A point of the world.
+    pub fn point(&self, world: Vec3) -> Vec3 {
+        (world - self.center) / self.unit
+    }
+}
+
+/// Three numbers and a fourth in single precision; none is infinite.
+fn texel(v: Vec3, w: f64) -> [f32; 4] {
+    v.extend(w).to_array().map(|x| x.clamp(-1e30, 1e30) as f32)
+}
+
+/// The materials, each of [`TEXELS`] texels.
+pub fn materials(materials: &[ResolvedMaterial]) -> Vec<[f32; 4]> {
+    let row = |material: &ResolvedMaterial| {
+        let texture = material.texture.map_or(-1.0, f64::from);
+        [
+            texel(material.ambient, material.shininess),
+            texel(material.diffuse, texture),
+            texel(material.specular, 0.0),
+            texel(material.emissive, f64::from(u8::from(material.texture_on_all_light))),
+        ]
+    };
+    materials.iter().flat_map(row).collect()
+}
+
+/// The lights, each of [`TEXELS`] texels: colour and kind; place and cosine of the cut-off; axis and exponent; fading.
+pub fn lights(lights: &[Light], frame: &ViewFrame) -> Vec<[f32; 4]> {
+    let fading = |a: &Attenuation| texel(Vec3::new(a.constant, a.linear, a.quadratic), 0.0);
+    let none = [1.0, 0.0, 0.0, 0.0];
+    let row = |light: &Light| match light {
+        Light::Point { color, position, attenuation } => {
+            let place = texel(frame.point(*position), -2.0);
+            [texel(*color, 0.0), place, texel(Vec3::ZERO, 0.0), fading(attenuation)]
+        }
+        Light::Spot { color, position, direction, attenuation, cutoff, dropoff } => {
+            let cosine = libm::cos(cutoff.clamp(0.0, std::f64::consts::PI));
+            let place = texel(frame.point(*position), cosine);
+            [texel(*color, 1.0), place, texel(direction.normalize(), 128.0 * dropoff), fading(attenuation)]
+        }
+        Light::Directional { color, direction } => {
+            [texel(*color, 2.0), texel(Vec3::ZERO, -2.0), texel(direction.normalize(), 0.0), none]
+        }
+        Light::Area { color, position, direction, attenuation, .. } => {
+            let place = texel(frame.point(*position), -2.0);
+            [texel(*color, 3.0), place, texel(direction.normalize(), 0.0), fading(attenuation)]
+        }
+    };
+    lights.iter().flat_map(row).collect()
+}
+
+/// Fills the last row of a table, at least one.
+pub fn padded(mut texels: Vec<[f32; 4]>) -> Vec<[f32; 4]> {
+    let rows = texels.len().div_ceil(WIDTH).max(1);
+    texels.resize(rows * WIDTH, [0.0; 4]);
+    texels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_stand_in_the_views_frame() {
+        let frame = ViewFrame { center: Vec3::X * 10.0, unit: 2.0 };
+        let attenuation = Attenuation { constant: 1.0, linear: 2.0, quadratic: 3.0 };
+        let light = Light::Spot {
+            color: Vec3::ONE,
+            position: Vec3::X * 14.0,
+            direction: Vec3::Y * 7.0,
+            attenuation,
+            cutoff: 0.5,
+            dropoff: 0.25,
+        };
+        let table = lights(&[light], &frame);
+        assert_eq!(table.len(), TEXELS);
+        assert_eq!(table[1], [2.0, 0.0, 0.0, libm::cos(0.5) as f32]);
+        assert_eq!((table[2], table[3]), ([0.0, 1.0, 0.0, 32.0], [1.0, 2.0, 3.0, 0.0]));
+        assert_eq!(padded(table).len(), WIDTH);
+        assert_eq!(padded(Vec::new()).len(), WIDTH);
+    }
+}
