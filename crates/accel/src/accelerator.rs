@@ -15,7 +15,6 @@ use crate::input::Boxes;
 use crate::input::GroupEvent;
 use crate::input::Kind;
 use crate::input::MAX_ITEMS;
-use crate::input::Quality;
 use crate::input::Settings;
 use crate::narrow::Frame;
 use crate::octree::Octree;
@@ -233,9 +232,6 @@ fn union(boxes: &impl Boxes) -> Aabb {
         .reduce(|| Aabb::EMPTY, Aabb::union)
 }
 
-/// So many items always get the best tree: 10 ms at most.
-const SMALL: usize = 1 << 14;
-
 /// The tree of a BVH and the order of its leaves.
 fn build_bvh(boxes: &impl Boxes, frame: Frame, settings: &Settings) -> (Tree, Vec<u32>) {
     let mut references: Vec<_> = (0..boxes.len())
@@ -243,13 +239,8 @@ fn build_bvh(boxes: &impl Boxes, frame: Frame, settings: &Settings) -> (Tree, Ve
         .with_min_len(1 << 12)
         .map(|item| Reference::new(frame.narrow(&boxes.bounds(item)), item))
         .collect();
-    // A small tree is built in no time, whatever its quality.
-    let quality = match settings.quality {
-        Quality::Balanced if references.len() <= SMALL => Quality::Best,
-        quality @ (Quality::Fast | Quality::Balanced | Quality::Best) => quality,
-    };
     let mut nodes = Vec::new();
-    let root: Child = Builder { quality }.build(&mut references, 0, &mut nodes);
+    let root: Child = Builder { quality: settings.quality }.build(&mut references, 0, &mut nodes);
     let order = references.par_iter().with_min_len(1 << 12).map(Reference::number).collect();
     drop(references);
     (Tree::new(frame, nodes, root), order)
