@@ -14,6 +14,11 @@ use eframe::egui;
 use eframe::egui::Key;
 use eframe::egui::Modifiers;
 use std::sync::Arc;
+use std::time::Duration;
+use web_time::Instant;
+
+/// How long a key is held before it leads the camera.
+const HELD: Duration = Duration::from_millis(120);
 
 /// See the module.
 pub struct App {
@@ -21,6 +26,8 @@ pub struct App {
     panels: Panels,
     viewport: Viewport,
     wake: crate::link::Wake,
+    /// Since when keys that lead the camera are held, and no other.
+    held_since: Option<Instant>,
     watch: Option<Watch>,
 }
 
@@ -47,7 +54,8 @@ impl App {
         if let Some(path) = &start.scene {
             state.open(Source { path: path.clone(), files: Arc::new(Disk) });
         }
-        Self { state, panels: Panels::default(), viewport: Viewport::default(), wake, watch: None }
+        let (panels, viewport) = (Panels::default(), Viewport::default());
+        Self { state, panels, viewport, wake, held_since: None, watch: None }
     }
 
     /// Files that were dropped on the window.
@@ -166,6 +174,13 @@ impl App {
         });
         let [x, y, z, right, up, away] = held;
         if held == [0.0; 6] {
+            self.held_since = None;
+            return;
+        }
+        ctx.request_repaint();
+        // A key of a chord such as Ctrl + S may be seen before or after its other key; that is no flight.
+        let since = *self.held_since.get_or_insert_with(Instant::now);
+        if since.elapsed() < HELD {
             return;
         }
         let step = 0.4 * seconds;
@@ -178,7 +193,6 @@ impl App {
                 navigator.dolly(libm::exp(away * seconds));
             }
         });
-        ctx.request_repaint();
     }
 }
 
