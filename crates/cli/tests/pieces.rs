@@ -202,3 +202,22 @@ fn gnu_parallel_runs_its_recipe() {
     assert!(ended.status.success(), "{script}\n{}", String::from_utf8_lossy(&ended.stderr));
     assert!(folder.get("room.png") == folder.get("whole.png"));
 }
+
+#[test]
+fn slurm_runs_its_recipe() {
+    let folder = Folder::new();
+    folder.put("room.ray", common::BALLS.as_bytes());
+    let program = std::path::Path::new(env!("CARGO_BIN_EXE_dotray"));
+    let ended = Command::new("sh")
+        .arg(common::root().join("crates/cli/tests/slurm.sh"))
+        .arg(folder.path(""))
+        .arg(std::fs::canonicalize(common::root().join("docs/machines.md")).expect("the page"))
+        .arg(program.parent().expect("a folder"))
+        .output()
+        .expect("a shell");
+    let said = String::from_utf8_lossy(&ended.stdout).into_owned() + &String::from_utf8_lossy(&ended.stderr);
+    match ended.status.code() {
+        Some(77) => println!("skipped: {said}"),
+        code => assert_eq!(code, Some(0), "{said}"),
+    }
+}

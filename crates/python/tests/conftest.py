@@ -6,6 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
+
+# The same examples on every run, and no folder of them beside the sources.
+settings.register_profile("stable", derandomize=True, database=None, deadline=None)
+settings.load_profile("stable")
 
 ROOT = Path(__file__).resolve().parents[3]
 

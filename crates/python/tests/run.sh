@@ -10,7 +10,11 @@ target=${CARGO_TARGET_DIR:-target}
 venv=$target/python-venv
 wheels=$target/wheels
 
-"$python" -m venv "$venv"
+if ! "$python" -m venv "$venv"; then
+    echo "python tests: no venv; trying to install it" >&2
+    apt-get update -qq && apt-get install -y -qq python3-venv python3-pip
+    "$python" -m venv "$venv"
+fi
 bin=$PWD/$venv/bin
 [ "${target#/}" = "$target" ] || bin=$venv/bin
 "$bin/pip" install -q --disable-pip-version-check "maturin>=1.16,<2" numpy pytest hypothesis mypy tqdm Pillow \

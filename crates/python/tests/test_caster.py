@@ -207,7 +207,7 @@ finite = st.floats(-50, 50, allow_nan=False, width=32)
 point = st.tuples(finite, finite, finite)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.lists(st.tuples(point, st.floats(0.01, 20)), min_size=1, max_size=12), point, point)
 def test_any_ray_any_spheres(spheres, origin, target):
     centers, radii = np.array([s[0] for s in spheres]), np.array([s[1] for s in spheres])
@@ -235,7 +235,7 @@ def test_any_ray_any_spheres(spheres, origin, target):
     assert caster.occluded(ray) == bool(len(every["t_hit"])) and caster.count_hits(ray) == len(every["t_hit"])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32), st.integers(1, 60), st.booleans())
 def test_any_arrays_make_a_picture(seed, count, single):
     random = np.random.default_rng(seed)

@@ -333,7 +333,7 @@ def test_other_threads_of_python_run_meanwhile():
     taken = time.monotonic() - start
     stop.set()
     counter.join()
-    assert turns[0] - before > taken * 50, (turns, taken)
+    assert turns[0] - before > taken * 5, (turns, taken)
 
 
 def test_a_fork_can_render():

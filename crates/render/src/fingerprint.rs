@@ -181,6 +181,10 @@ fn shapes(resolved: &Resolved) -> String {
             if let Some(shape) = file.shape(run.kind, entry as usize) {
                 numbers::of_shape(&shape, &mut |number| hash.number(number));
             }
+            let color = run.colors.and_then(|(list, first)| {
+                file.colors.get(list as usize)?.colors.get((first + entry - run.first) as usize)
+            });
+            color.into_iter().flatten().for_each(|&part| hash.number(part.into()));
         }
     }
     // Open sides of both kinds have one list: their numbers tell them apart.

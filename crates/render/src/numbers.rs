@@ -34,5 +34,5 @@ fn of_cylinder(cylinder: &Cylinder, mut vector: impl FnMut(Vec3, &[f64])) {
 }
 
 fn of_cone(cone: &Cone, mut vector: impl FnMut(Vec3, &[f64])) {
-    vector(cone.center(), &[cone.radius(), cone.height()]);
+    vector(cone.center(), &[cone.radius(), cone.height(), cone.top()]);
 }

@@ -45,6 +45,18 @@ pub struct ShadePoint<'a> {
     pub mirrored: Vec3,
 }
 
+/// [`log2_above`] is less than 0.11 above the logarithm: a summand 2^-55.2 times the other at most is lost.
+const LOST: f64 = 55.2;
+
+/// A number above the binary logarithm of a positive number, by 0.11 at most where that is normal: the exponent and the
+/// tangent at 1.5 of the rest, which lies above the curve.
+fn log2_above(x: f64) -> f64 {
+    let bits = x.to_bits();
+    let exponent = (bits >> 52) as f64 - 1023.0;
+    let rest = f64::from_bits(bits & ((1 << 52) - 1) | (1023 << 52));
+    exponent + 0.585 + (rest - 1.5) * 0.9618
+}
+
 impl<'a> ShadePoint<'a> {
     /// The point where `ray` met `nearest`.
     pub(crate) fn new(world: &'a World, ray: &Ray, nearest: &Nearest, filter: TextureFilter) -> Self {
@@ -104,7 +116,23 @@ impl<'a> ShadePoint<'a> {
             return Vec3::ZERO;
         }
         let diffuse = self.diffuse(cosine) * tint.diffuse;
+        if self.highlight_is_lost(incident.towards, diffuse, tint) {
+            return diffuse * incident.strength;
+        }
         (diffuse + self.highlight(incident.towards) * tint.specular) * incident.strength
+    }
+
+    /// Whether rounding takes the whole highlight off again where it is added to `beside`, so that nobody need know it:
+    /// by far the most points lie outside of the highlight, and a power costs more than all other terms together.
+    fn highlight_is_lost(&self, towards_light: Vec3, beside: Vec3, tint: &Tint) -> bool {
+        let specular = self.material.specular * self.texture_on_all * tint.specular;
+        let (cosine, shininess) = (self.mirrored.dot(towards_light), self.material.shininess);
+        let (most, least) = (specular.abs().max_element(), beside.min_element());
+        if cosine <= 0.0 || least <= 0.0 || !most.is_finite() {
+            return false;
+        }
+        // A summand below 2^-54 of the other is lost; one power of two more is for what rounds on the way here.
+        shininess * log2_above(cosine) + log2_above(most) < log2_above(least) - LOST
     }
 
     /// M_D·T_C·(n̂·L̂)
@@ -149,5 +177,30 @@ impl<'a> ShadePoint<'a> {
         }
         let direction = self.direction * eta + normal * (eta * cos_in - cos_out_squared.sqrt());
         Some(Ray::new(self.point, direction.normalize()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LOST;
+    use super::log2_above;
+
+    #[test]
+    fn the_quick_logarithm_lies_above() {
+        for i in 0..200_000 {
+            let x = libm::exp(f64::from(i - 100_000) * 1e-3);
+            let above = log2_above(x) - libm::log2(x);
+            assert!((0.0..0.11).contains(&above), "{x}: {above}");
+        }
+        // The least normal number; what lies below it is taken for larger than it is.
+        assert!(log2_above(f64::from_bits(1)) >= -1074.0);
+    }
+
+    #[test]
+    fn what_is_lost_changes_no_sum() {
+        let summand = libm::exp2(0.11 - LOST);
+        for beside in [1.0, 1.0_f64.next_down(), 1.5, 0.1, 1e-300] {
+            assert_eq!((beside + beside * summand, beside - beside * summand), (beside, beside));
+        }
     }
 }

@@ -170,7 +170,7 @@ impl Marks {
 }
 
 /// A mark that outweighs all others.
-const DECISIVE: usize = 1 << 40;
+const DECISIVE: usize = 1 << 30;
 
 fn doubt(weighed: &[(Dialect, Evidence)], dialect: Dialect, tie: bool) -> Diagnostic {
     let candidates = weighed.iter().filter(|(_, evidence)| evidence.count > 0);

@@ -1,5 +1,5 @@
-//! The tracer behind the screen: one picture at a time, from coarse to fine, in portions so short that whatever comes in
-//! between (a newer camera, a question about a pixel) is answered at once.
+//! The tracer behind the screen: one picture at a time, from coarse to fine, in short portions. Whatever comes in between
+//! (a newer camera, a question about a pixel) interrupts a portion and is answered at once.
 //!
 //! It is a state machine without threads of its own: a window lets it run on a thread, a page in slices of time.
 
@@ -26,6 +26,8 @@ use dotray_scene::Resolved;
 use dotray_scene::model;
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 use web_time::Instant;
 
@@ -96,8 +98,8 @@ pub struct Seen {
     pub distance: f64,
 }
 
-/// How long a portion of work may take.
-pub const PORTION: Duration = Duration::from_millis(10);
+/// How long a portion of work may take: long enough to keep threads and packets of rays full.
+pub const PORTION: Duration = Duration::from_millis(30);
 
 /// How often a picture under way is shown.
 const SHOWN_EVERY: Duration = Duration::from_millis(40);
@@ -137,12 +139,18 @@ struct Job {
 pub struct Engine {
     world: Option<Box<World>>,
     job: Option<Box<Job>>,
+    interrupt: Arc<AtomicBool>,
 }
 
 impl Engine {
     /// Whether there is more to trace.
     pub fn is_busy(&self) -> bool {
         self.job.is_some()
+    }
+
+    /// As long as this is set, no further piece of a portion is begun; what is left of the portion comes later.
+    pub fn interrupt(&self) -> Arc<AtomicBool> {
+        self.interrupt.clone()
     }
 
     /// Takes a command.
@@ -185,7 +193,7 @@ impl Engine {
     pub fn advance(&mut self) -> Option<Reply> {
         let world = self.world.as_deref()?;
         let job = self.job.as_deref_mut()?;
-        let more = job.portion(world);
+        let more = job.portion(world, &self.interrupt);
         let now = Instant::now();
         let due = job.last_shown.is_none_or(|last| now.duration_since(last) >= SHOWN_EVERY);
         let reply = (due || !more).then(|| job.reply(!more, now));
@@ -256,7 +264,7 @@ impl Job {
     }
 
     /// Traces as much as takes about [`PORTION`]; false where nothing is left.
-    fn portion(&mut self, world: &World) -> bool {
+    fn portion(&mut self, world: &World, interrupt: &AtomicBool) -> bool {
         let threads = rayon::current_num_threads().max(1);
         let start = Instant::now();
         let most = (PORTION.as_secs_f64() * threads as f64 / self.seconds_a_ray).clamp(1.0, 65536.0) as usize;
@@ -267,22 +275,22 @@ impl Job {
                     self.stage = Stage::Blocks(0);
                     return !self.blocks.is_empty();
                 }
-                self.spots(world, &spots, threads);
-                spots.len()
+                self.spots(world, &spots, threads, interrupt)
             }
             Stage::Blocks(first) => {
                 let first = *first;
                 let a_block = (BLOCK * BLOCK) as usize * self.samples_a_pixel();
                 let count = (most / a_block).max(1).min(self.blocks.len() - first);
                 self.stage = Stage::Blocks(first + count);
-                self.block_range(world, first, count);
-                count * a_block
+                self.block_range(world, first, count, interrupt) * a_block
             }
         };
         self.rays_done += rays as u64;
         // A moving mean, quick to learn that a part of the picture is dear.
-        let measured = start.elapsed().as_secs_f64() * threads as f64 / rays.max(1) as f64;
-        self.seconds_a_ray = (0.3 * self.seconds_a_ray + 0.7 * measured).clamp(1e-8, 10.0);
+        if rays > 0 {
+            let measured = start.elapsed().as_secs_f64() * threads as f64 / rays as f64;
+            self.seconds_a_ray = (0.3 * self.seconds_a_ray + 0.7 * measured).clamp(1e-8, 10.0);
+        }
         match &self.stage {
             Stage::Samples(_) => true,
             Stage::Blocks(next) => *next < self.blocks.len(),
@@ -297,8 +305,9 @@ impl Job {
         }
     }
 
-    fn spots(&mut self, world: &World, spots: &[Spot], threads: usize) {
-        let piece = spots.len().div_ceil(threads * 2).max(4);
+    /// Traces pixels; answers how many.
+    fn spots(&mut self, world: &World, spots: &[Spot], threads: usize, interrupt: &AtomicBool) -> usize {
+        let piece = spots.len().div_ceil(threads * 4).max(4);
         let (camera, options) = (&self.camera, &self.request.options);
         let place = |spot: &Spot| {
             let (i, j) = (self.window.x + spot.x, self.row_from_below(spot.y));
@@ -306,24 +315,46 @@ impl Job {
         };
         let trace = |spots: &[Spot]| {
             let rays: Vec<Ray> = spots.iter().map(place).collect();
-            Tracer::new(world, options, level()).colors(&rays)
+            let go_on = !interrupt.load(Ordering::Relaxed);
+            go_on.then(|| Tracer::new(world, options, level()).colors(&rays))
         };
-        let colors: Vec<Vec<Vec3>> = spots.par_chunks(piece).map(trace).collect();
-        for (spot, color) in spots.iter().zip(colors.iter().flatten()) {
-            self.store(spot.x, spot.y, spot.size, *color);
+        let pieces: Vec<Option<Vec<Vec3>>> = spots.par_chunks(piece).map(trace).collect();
+        let (mut traced, mut left) = (0, Vec::new());
+        for (spots, colors) in spots.chunks(piece).zip(pieces) {
+            let Some(colors) = colors else {
+                left.extend_from_slice(spots);
+                continue;
+            };
+            traced += spots.len();
+            spots.iter().zip(colors).for_each(|(spot, color)| self.store(spot.x, spot.y, spot.size, color));
         }
+        if let Stage::Samples(passes) = &mut self.stage {
+            passes.give_back(left);
+        }
+        traced
     }
 
-    fn block_range(&mut self, world: &World, first: usize, count: usize) {
+    /// Traces oversampled blocks; answers how many.
+    fn block_range(&mut self, world: &World, first: usize, count: usize, interrupt: &AtomicBool) -> usize {
         let blocks = self.blocks.get(first..first + count).unwrap_or_default().to_vec();
         let (camera, options) = (&self.camera, &self.request.options);
-        let colors: Vec<Vec<Vec3>> =
-            blocks.par_iter().map(|block| oversampled(world, options, camera, *block)).collect();
-        for (block, colors) in blocks.iter().zip(&colors) {
+        let trace = |block: &Block| {
+            let go_on = !interrupt.load(Ordering::Relaxed);
+            go_on.then(|| oversampled(world, options, camera, *block))
+        };
+        let all: Vec<Option<Vec<Vec3>>> = blocks.par_iter().map(trace).collect();
+        let mut traced = 0;
+        for (block, colors) in blocks.iter().zip(all) {
+            let Some(colors) = colors else {
+                self.blocks.push(*block);
+                continue;
+            };
+            traced += 1;
             for ((i, j), color) in block.pixels().into_iter().zip(colors) {
-                self.store(i - self.window.x, self.row_from_below(0) - j, 1, *color);
+                self.store(i - self.window.x, self.row_from_below(0) - j, 1, color);
             }
         }
+        traced
     }
 
     /// Keeps a colour, and shows it in the square that it stands for.
@@ -334,7 +365,8 @@ impl Job {
         if let Some(pixel) = self.film.get_mut(at..at + 3) {
             pixel.copy_from_slice(&color);
         }
-        let [r, g, b] = color.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
+        // In double precision, as files have it: where the product is rounded twice, a level may be off.
+        let [r, g, b] = color.map(|channel| (f64::from(channel).clamp(0.0, 1.0) * 255.0).round() as u8);
         let right = (x + size).min(self.window.width) as usize;
         for row in y..(y + size).min(self.window.height) {
             let start = row as usize * width;
@@ -350,8 +382,7 @@ impl Job {
         let total = if self.blocks.is_empty() {
             pixels
         } else {
-            pixels / 16.0
-                + self.blocks.len() as f64 * f64::from(BLOCK * BLOCK) * self.samples_a_pixel() as f64
+            pixels * (1.0 / 16.0 + self.samples_a_pixel() as f64)
         };
         let image = finished.then(|| std::mem::take(&mut self.film));
         let image = image.and_then(|film| Image::from_samples(width, height, Channels::Rgb, film).ok());

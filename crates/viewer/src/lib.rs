@@ -1,6 +1,6 @@
-//! rayview: a scene on the screen, rasterised at once and then traced, in a window and in a browser.
+//! rayview: a scene on the screen, rasterised at once and then traced.
 //!
-//! What stands here without the feature `screen` needs no window, no GPU and no browser: the camera under the hand,
+//! What stands here without the feature `screen` needs no window and no GPU: the camera under the hand,
 //! shapes laid down as a GPU wants them, the tree and its search, editing numbers in the text, tracing from coarse to
 //! fine, and the rays of a pixel as lines. The feature adds what draws and what listens.
 //!
@@ -11,8 +11,6 @@ pub mod navigate;
 pub mod edit;
 
 pub mod hidden;
-
-pub mod memory;
 
 pub mod pictures;
 
@@ -48,11 +46,8 @@ pub mod panels;
 #[cfg(feature = "screen")]
 pub mod viewport;
 
-#[cfg(all(feature = "screen", not(target_arch = "wasm32")))]
+#[cfg(feature = "screen")]
 pub mod watch;
 
 #[cfg(feature = "screen")]
 pub mod app;
-
-#[cfg(all(feature = "screen", target_arch = "wasm32"))]
-pub mod web;

@@ -3,15 +3,19 @@
 use crate::document::Document;
 use crate::document::Message;
 use crate::document::Opened;
+use crate::document::messages;
 use crate::document::open;
 use crate::engine::Command;
 use crate::engine::Engine;
 use crate::engine::Reply;
 use dotray_render::PrepareOptions;
+use dotray_render::Textures;
 use dotray_render::World;
 use dotray_scene::Files;
+use dotray_scene::Sources;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc;
@@ -49,16 +53,8 @@ pub struct Link {
     /// The number of the scene asked for last: what older askings bring is dropped.
     asked: Arc<AtomicU64>,
     wake: Wake,
-    #[cfg(target_arch = "wasm32")]
-    here: Here,
-}
-
-/// A page has one thread: the work is done in slices whenever the screen asks for news.
-#[cfg(target_arch = "wasm32")]
-struct Here {
-    engine: Engine,
-    commands: mpsc::Receiver<Command>,
-    tasks: std::collections::VecDeque<Box<dyn FnOnce()>>,
+    /// Ends the tracer's portion, lest a command wait for it.
+    interrupt: Arc<AtomicBool>,
 }
 
 impl Link {
@@ -66,26 +62,18 @@ impl Link {
     pub fn new(wake: Wake) -> Self {
         let (sender, news) = mpsc::channel();
         let (commands, receiver) = mpsc::channel();
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            let (sender, wake) = (sender.clone(), wake.clone());
-            std::thread::spawn(move || trace(&receiver, &sender, &wake));
-        }
-        Self {
-            news,
-            sender,
-            commands,
-            asked: Arc::default(),
-            wake,
-            #[cfg(target_arch = "wasm32")]
-            here: Here { engine: Engine::default(), commands: receiver, tasks: Default::default() },
-        }
+        let engine = Engine::default();
+        let interrupt = engine.interrupt();
+        let (news_of_tracer, wake_of_tracer) = (sender.clone(), wake.clone());
+        std::thread::spawn(move || trace(engine, &receiver, &news_of_tracer, &wake_of_tracer));
+        Self { news, sender, commands, asked: Arc::default(), wake, interrupt }
     }
 
     /// Tells the tracer something.
     pub fn send(&self, command: Command) {
         // A tracer that is gone has told why on the error stream.
         let _ = self.commands.send(command);
+        self.interrupt.store(true, Ordering::Relaxed);
         (self.wake)();
     }
 
@@ -109,11 +97,17 @@ impl Link {
                 Ok(opened) => opened,
                 Err(messages) => return tell(News::Failed(messages)),
             };
+            let start = web_time::Instant::now();
+            let textures = Textures::load(&resolved, &*source.files, &prepare);
+            let textures = textures.map_err(|faults| messages(&faults, &document.sources));
             if screen {
                 tell(News::Opened(Box::new(document)));
             }
-            let start = web_time::Instant::now();
-            let world = World::prepare(resolved, &*source.files, &prepare);
+            let textures = match textures {
+                Ok(textures) => textures,
+                Err(messages) => return tell(News::Failed(messages)),
+            };
+            let world = World::build(resolved, textures, &prepare);
             if !current() {
                 return;
             }
@@ -122,53 +116,24 @@ impl Link {
                     let _ = commands.send(Command::World(Some(Box::new(world))));
                     tell(News::Prepared(start.elapsed().as_secs_f64()));
                 }
-                Err(faults) => {
-                    let sources = dotray_scene::Sources::default();
-                    tell(News::Failed(crate::document::messages(&faults, &sources)));
-                }
+                // What is said of a whole scene has no place.
+                Err(faults) => tell(News::Failed(messages(&faults, &Sources::default()))),
             }
         };
-        #[cfg(not(target_arch = "wasm32"))]
         std::thread::spawn(task);
-        #[cfg(target_arch = "wasm32")]
-        self.here.tasks.push_back(Box::new(task));
     }
 
-    /// What has come since the last time; in a page this does a slice of the work.
+    /// What has come since the last time.
     pub fn news(&mut self) -> Vec<News> {
-        #[cfg(target_arch = "wasm32")]
-        self.work_here();
         self.news.try_iter().collect()
-    }
-
-    #[cfg(target_arch = "wasm32")]
-    fn work_here(&mut self) {
-        const SLICE: std::time::Duration = std::time::Duration::from_millis(24);
-        if let Some(task) = self.here.tasks.pop_front() {
-            task();
-        }
-        while let Ok(command) = self.here.commands.try_recv() {
-            for reply in self.here.engine.handle(command) {
-                let _ = self.sender.send(News::Reply(reply));
-            }
-        }
-        let start = web_time::Instant::now();
-        while self.here.engine.is_busy() && start.elapsed() < SLICE {
-            if let Some(reply) = self.here.engine.advance() {
-                let _ = self.sender.send(News::Reply(reply));
-            }
-        }
-        if self.here.engine.is_busy() || !self.here.tasks.is_empty() {
-            (self.wake)();
-        }
     }
 }
 
 /// The tracer's thread: commands come before work, so a new camera waits for one portion at most.
-#[cfg(not(target_arch = "wasm32"))]
-fn trace(commands: &mpsc::Receiver<Command>, news: &mpsc::Sender<News>, wake: &Wake) {
-    let mut engine = Engine::default();
+fn trace(mut engine: Engine, commands: &mpsc::Receiver<Command>, news: &mpsc::Sender<News>, wake: &Wake) {
+    let interrupt = engine.interrupt();
     loop {
+        interrupt.store(false, Ordering::Relaxed);
         let command = if engine.is_busy() {
             match commands.try_recv() {
                 Ok(command) => Some(command),

@@ -22,9 +22,6 @@ struct Args {
     /// The window's size in points.
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = window_size)]
     window: [f32; 2],
-    /// Points of the window a pixel is large; by default what the system says.
-    #[arg(long, value_name = "FACTOR")]
-    scale: Option<f32>,
 }
 
 fn window_size(text: &str) -> Result<[f32; 2], String> {
@@ -47,13 +44,7 @@ pub fn main() -> ExitCode {
         ..Default::default()
     };
     let start = Start { scene: args.scene, traced: args.traced, trace_at_rest: args.trace_at_rest };
-    let scale = args.scale;
-    let create: eframe::AppCreator<'_> = Box::new(move |creation| {
-        if let Some(scale) = scale {
-            creation.egui_ctx.set_pixels_per_point(scale.clamp(0.5, 8.0));
-        }
-        Ok(Box::new(App::new(creation, &start)))
-    });
+    let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, &start))));
     match eframe::run_native("rayview", options, create) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -75,6 +75,11 @@ impl Passes {
         spots
     }
 
+    /// Takes back pixels that were not traced after all; they come next.
+    pub fn give_back(&mut self, spots: impl IntoIterator<Item = Spot>) {
+        self.left.splice(0..0, spots);
+    }
+
     fn push_tile(&self, (column, row): (u32, u32), spots: &mut Vec<Spot>) {
         let size = STRIDES.get(self.pass).copied().unwrap_or(1);
         let edge = size * TILE;

@@ -184,6 +184,7 @@ impl State {
 
     fn ask(&mut self, screen: bool) {
         self.prepared = false;
+        let screen = screen || self.document.is_none();
         let prepare = PrepareOptions { accel: self.accel, ..PrepareOptions::default() };
         if let Some(source) = &self.source {
             self.link.open(source.clone(), prepare, screen);

@@ -78,8 +78,9 @@ fn a_scene_is_previewed_traced_led_about_clicked_broken_and_mended() {
     let path = folder.path().join("scene.ray");
     std::fs::write(&path, SCENE).expect("written");
     std::fs::write(folder.path().join("cells.png"), cells()).expect("written");
-    let window = desk.open(&path, &["--window", "1100x640"]);
-    window.pointer(620, 330);
+    let window = desk.open(&path, &["--window", "960x520"], "1");
+    // Nothing hovers over the view.
+    window.pointer(20, 450);
 
     // Traced: saved under the name that stands there, the picture is the renderer's own file.
     window.key("t");
@@ -97,7 +98,12 @@ fn a_scene_is_previewed_traced_led_about_clicked_broken_and_mended() {
 
     // On the screen it stands pixel for pixel.
     let expected = expected.to_rgb8(false);
-    let view = desk.find(&expected, width, height).expect("the traced picture on the screen");
+    let mut view = None;
+    desk.until("the traced picture stands on the screen", || {
+        view = desk.find(&expected, width, height);
+        view.is_some()
+    });
+    let view = view.expect("found");
     desk.keep("traced");
 
     // The preview is what the renderer makes without shadows and further rays.
@@ -111,20 +117,22 @@ fn a_scene_is_previewed_traced_led_about_clicked_broken_and_mended() {
     assert!(share < 0.02, "{share} of the preview's pixels are off");
 
     // A drag orbits, the wheel comes nearer, R goes back.
-    window.drag((620, 330), (700, 300));
+    window.drag((460, 280), (540, 250));
+    window.pointer(20, 450);
     desk.until("the drag has turned the scene", || unlike(&desk.part(view), &first, 8) > 0.2);
     window.key("r");
     desk.until("R is back at the file's camera", || unlike(&desk.part(view), &first, 8) < 0.01);
-    window.click(4, 620, 330);
+    window.click(4, 460, 280);
+    window.pointer(20, 450);
     desk.until("the wheel has come nearer", || unlike(&desk.part(view), &first, 8) > 0.1);
     window.key("r");
     desk.until("R is back at the file's camera", || unlike(&desk.part(view), &first, 8) < 0.01);
 
     // A click draws the pixel's rays and the shape's box, Escape takes them away.
-    window.click(1, 620, 400);
+    window.click(1, 460, 300);
+    window.pointer(20, 450);
     desk.until("rays and a box are drawn", || unlike(&desk.part(view), &first, 40) > 0.001);
     desk.keep("clicked");
-    window.pointer(20, 500);
     window.key("Escape");
     desk.until("Escape takes the lines away", || unlike(&desk.part(view), &first, 8) < 0.01);
 
@@ -146,7 +154,8 @@ fn the_window_is_sharp_on_a_dense_screen() {
     std::fs::write(&path, SCENE).expect("written");
     std::fs::write(folder.path().join("cells.png"), cells()).expect("written");
     // Two pixels a point: the picture has the window's pixels, not its points.
-    let window = desk.open(&path, &["--window", "700x440", "--scale", "2", "--traced"]);
+    let window = desk.open(&path, &["--window", "720x400", "--traced"], "2");
+    window.pointer(20, 700);
     let saved = path.with_extension("png");
     desk.until("the traced picture can be saved", || {
         window.key("ctrl+s");
@@ -155,7 +164,7 @@ fn the_window_is_sharp_on_a_dense_screen() {
     let file = std::fs::read(&saved).expect("saved");
     let picture = dotray_image::decode(&file, None, &dotray_image::Limits::default()).expect("a picture");
     let (width, height) = (picture.width() as u32, picture.height() as u32);
-    assert!(height > 500, "{width}x{height}");
+    assert!(height > 400, "{width}x{height}");
     desk.until("the picture stands on the screen pixel for pixel", || {
         desk.find(&picture.to_rgb8(false), width, height).is_some()
     });

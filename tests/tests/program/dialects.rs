@@ -185,6 +185,12 @@ fn what_is_lost_is_told() {
         assert!(lost.contains(part), "{part} is not in\n{lost}");
     }
     assert_eq!(codes(Dialect::Unisa).len(), 1, "the area light alone");
+    let blunt = read_as("#shape_cone -1 0 0 0 1 2 .5  #light_dir 1 1 1 0 0 -1", Dialect::Slides);
+    for to in [Dialect::Uva, Dialect::Jhu, Dialect::Hmc, Dialect::Unisa] {
+        let told = converted(&blunt, to).lost.iter().any(|lost| lost.message.contains("no truncated cone"));
+        assert!(told, "{to}");
+    }
+    assert!(converted(&blunt, Dialect::Slides).lost.is_empty());
     let curved = read_as(
         "#shape_triangle -1  0 0 0  1 0 0  0 1 0  0 0 1  0 1 1  1 0 1  0 0  1 0  0 1  #light_dir 1 1 1 0 0 -1",
         Dialect::Slides,

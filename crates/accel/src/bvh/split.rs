@@ -55,7 +55,8 @@ const FEW: usize = 32;
 pub fn best_split(members: &[impl Member], span: &Span, quality: Quality) -> Option<Split> {
     match quality {
         Quality::Fast => Bins::<8>::of(members, span).best(),
-        // Few members fall into few bins, and most splits are of few members.
+        // Few members fall into few bins, and most splits are of few members. (Twice the bins for all of a small scene
+        // were tried: lattice12 has 11 % fewer box tests of it, and takes as long.)
         Quality::Balanced if members.len() <= FEW => Bins::<8>::of(members, span).best(),
         Quality::Balanced => Bins::<16>::of(members, span).best(),
         Quality::Best => Bins::<32>::of(members, span).best(),

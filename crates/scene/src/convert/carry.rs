@@ -16,6 +16,7 @@ use crate::model::Vertex;
 use crate::model::Weights;
 use crate::span::FileId;
 use crate::span::Span;
+use dotray_geometry::Cone;
 use dotray_geometry::OpenSide;
 use dotray_geometry::Vec3;
 
@@ -71,6 +72,11 @@ pub fn carry(written: &[SceneFile], mut file: SceneFile, to: Dialect, lost: &mut
         drop_runs(&mut file.items, ShapeKind::Torus);
         file.tori = ShapeList::default();
     }
+    if !has_truncated_cones(to) {
+        for cone in &mut file.cones.shapes {
+            *cone = Cone::new(cone.center(), cone.radius(), cone.height()).unwrap_or(*cone);
+        }
+    }
     match to {
         Dialect::Slides => {}
         Dialect::Uva | Dialect::Jhu | Dialect::Unisa => share_vertices(&mut file),
@@ -100,6 +106,13 @@ fn has_tori(dialect: Dialect) -> bool {
     }
 }
 
+fn has_truncated_cones(dialect: Dialect) -> bool {
+    match dialect {
+        Dialect::Slides => true,
+        Dialect::Uva | Dialect::Jhu | Dialect::Hmc | Dialect::Unisa => false,
+    }
+}
+
 fn has_open_sides(dialect: Dialect) -> bool {
     match dialect {
         Dialect::Hmc => true,
@@ -114,6 +127,11 @@ fn shapes(written: &[SceneFile], to: Dialect, lost: &mut Lost) {
                 let span = file.shape_span(number, ShapeKind::Torus, index);
                 lose(lost, span, format!("`{to}` has no torus: it is left out"));
             }
+        }
+        let cones = file.cones.shapes.iter().enumerate();
+        for (index, _) in cones.filter(|(_, cone)| cone.top() > 0.0 && !has_truncated_cones(to)) {
+            let span = file.shape_span(number, ShapeKind::Cone, index);
+            lose(lost, span, format!("`{to}` has no truncated cone: it goes on to an apex"));
         }
         for index in (0..file.open_sides.shapes.len()).filter(|_| !has_open_sides(to)) {
             let span = file.shape_span(number, ShapeKind::Open, index);

@@ -16,7 +16,7 @@ use std::time::Duration;
 use std::time::Instant;
 
 /// How long anything may take: software drivers on busy machines are slow.
-const PATIENCE: Duration = Duration::from_secs(90);
+const PATIENCE: Duration = Duration::from_secs(150);
 
 /// A rectangle of the screen: left, top, width, height.
 pub type Part = [usize; 4];
@@ -50,7 +50,7 @@ impl Desk {
         }
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1500x1000x24", "-nolisten", "tcp"])
+            .args(["-displayfd", "1", "-screen", "0", "1500x1000x24", "-nolisten", "tcp", "-noreset"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -61,12 +61,13 @@ impl Desk {
     }
 
     /// Opens a scene and waits until the window is there and has the keyboard.
-    pub fn open(&self, scene: &Path, arguments: &[&str]) -> Window<'_> {
+    pub fn open(&self, scene: &Path, arguments: &[&str], scale: &str) -> Window<'_> {
         let program = Command::new(env!("CARGO_BIN_EXE_rayview"))
             .arg(scene)
             .args(arguments)
             .env("DISPLAY", &self.display)
             .env("LIBGL_ALWAYS_SOFTWARE", "1")
+            .env("WINIT_X11_SCALE_FACTOR", scale)
             .env_remove("WAYLAND_DISPLAY")
             .spawn()
             .expect("rayview");
