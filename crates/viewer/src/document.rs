@@ -1,5 +1,5 @@
-//! A scene that was read for the screen: its text, its tree, its shapes for the GPU, and its materials and lights as they
-//! are edited.
+//! A scene that was read for the screen: its text, its tree, its shapes for the GPU, and its materials and lights as
+//! they are edited.
 
 use crate::edit::Change;
 use crate::edit::EditError;

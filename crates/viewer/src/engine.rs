@@ -1,5 +1,5 @@
-//! The tracer behind the screen: one picture at a time, from coarse to fine, in short portions. Whatever comes in between
-//! (a newer camera, a question about a pixel) interrupts a portion and is answered at once.
+//! The tracer behind the screen: one picture at a time, from coarse to fine, in short portions. Whatever comes in
+//! between (a newer camera, a question about a pixel) interrupts a portion and is answered at once.
 //!
 //! It is a state machine without threads of its own: a window lets it run on a thread, a page in slices of time.
 

@@ -8,8 +8,8 @@ const STRIDES: [u32; 5] = [16, 8, 4, 2, 1];
 /// The edge of a tile in samples of the pass.
 const TILE: u32 = 16;
 
-/// The pixels of a window pass after pass, each a pixel that no earlier pass had: row from above, column, and the edge of
-/// the square that it stands for until finer passes come.
+/// The pixels of a window pass after pass, each a pixel that no earlier pass had: row from above, column, and the edge
+/// of the square that it stands for until finer passes come.
 #[derive(Clone, Debug)]
 pub struct Passes {
     window: Crop,
