@@ -43,7 +43,7 @@ impl Hidden {
         let touched = self.ranges.get(first..last).unwrap_or_default();
         let start = touched.first().map_or(range.start, |other| other.start.min(range.start));
         let end = touched.last().map_or(range.end, |other| other.end.max(range.end));
-        self.ranges.splice(first..last, [start..end]);
+        self.ranges.splice(first..last, std::iter::once(start..end));
     }
 
     /// Shows shapes.
@@ -135,7 +135,7 @@ mod tests {
     fn isolating_leaves_one_range() {
         let mut hidden = Hidden::default();
         hidden.isolate(3..5, 10);
-        assert_eq!(hidden.shown(&(0..10).collect::<Vec<_>>()), [3..5]);
+        assert!(hidden.shown(&(0..10).collect::<Vec<_>>()).into_iter().eq(std::iter::once(3..5)));
         assert_eq!(hidden.shown(&[9]), []);
         hidden.clear();
         assert!(hidden.is_empty());
