@@ -116,6 +116,8 @@ pub enum Command {
     Grade(GradeArgs),
     /// Write a scene in another dialect, and say what could not be carried over.
     Convert(ConvertArgs),
+    /// Show a scene in a window: starts rayview.
+    View(ViewArgs),
     /// Help an editor with .ray files: a language server over standard input and output.
     Lsp(LspArgs),
     /// Print a manual page, or the reference in Markdown.
@@ -154,6 +156,18 @@ pub struct InfoArgs {
     /// How the scene is read.
     #[command(flatten)]
     pub reading: ReadingArgs,
+}
+
+/// `dotray view`.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// The scene.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// Trace at once.
+    #[arg(long)]
+    pub traced: bool,
 }
 
 /// `dotray convert`.

@@ -16,6 +16,7 @@ mod merge;
 mod plan;
 mod render;
 mod tree;
+mod view;
 mod work;
 
 use crate::args::Cli;
@@ -39,6 +40,7 @@ pub fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Convert(typed) => convert::run(typed, cli.color),
         Command::Grade(typed) => grade::run(typed),
         Command::Compare(typed) => compare::run(typed),
+        Command::View(typed) => view::run(typed),
         Command::Lsp(typed) => lsp::run(typed),
         Command::Man(typed) => man::run(typed),
         Command::Completions(typed) => completions::run(typed),

@@ -135,7 +135,7 @@ mod tests {
     fn isolating_leaves_one_range() {
         let mut hidden = Hidden::default();
         hidden.isolate(3..5, 10);
-        assert_eq!(hidden.shown(&(0..10).collect::<Vec<_>>()), std::iter::once(3..5).collect::<Vec<_>>());
+        assert!(hidden.shown(&(0..10).collect::<Vec<_>>()).into_iter().eq(std::iter::once(3..5)));
         assert_eq!(hidden.shown(&[9]), []);
         hidden.clear();
         assert!(hidden.is_empty());
