@@ -41,7 +41,10 @@ impl Watch {
         Some(Self { events, _watcher: watcher, files, changed: None })
     }
 
-    /// Whether a file has changed and been still since; otherwise how long to wait before asking again.
+    /// Whether a file has changed and been still since.
+    ///
+    /// # Errors
+    /// How long to wait before asking again, where a file has changed a moment ago.
     pub fn changed(&mut self) -> Result<bool, Duration> {
         let of_interest = |event: &Event| {
             let writes = !matches!(event.kind, notify::EventKind::Access(_));
