@@ -3,6 +3,7 @@
 use dotray::render::Fingerprint;
 use dotray::render::Textures;
 use dotray::render::World;
+use dotray::render::on_threads;
 use dotray::scene::Resolved;
 use dotray::scene::Scene;
 use dotray::scene::model::Camera;
@@ -37,6 +38,8 @@ pub struct Stage<'a> {
     disk: TimedDisk,
     /// The scene's camera, where the animation says nothing.
     camera: Camera,
+    /// What was decoded for the fingerprint and no world has yet.
+    textures: Option<Textures>,
     world: Option<World>,
     pace: Pace,
 }
@@ -104,7 +107,7 @@ impl<'a> Stage<'a> {
         animation: Animation,
     ) -> Result<Self, Failure> {
         let Written { scene, warnings, sources, disk, .. } =
-            input::read(&plan.input, &typed.reading, messages)?;
+            on_threads(plan.options.threads, || input::read(&plan.input, &typed.reading, messages))??;
         let outcome = resolve_within(scene.clone(), &limits::resolve_limits(&typed.reading.limits));
         let mut diagnostics = warnings;
         diagnostics.extend(outcome.diagnostics);
@@ -115,8 +118,21 @@ impl<'a> Stage<'a> {
             animation.groups.iter().map(|group| find(&groups, &group.group)).collect();
         let moving = moving.map_err(Failure::Failed)?;
         let (camera, pace) = (resolved.camera, Pace::default());
-        let world = None;
-        Ok(Self { plan, typed, messages, animation, moving, scene, sources, disk, camera, world, pace })
+        let (textures, world) = (None, None);
+        Ok(Self {
+            plan,
+            typed,
+            messages,
+            animation,
+            moving,
+            scene,
+            sources,
+            disk,
+            camera,
+            textures,
+            world,
+            pace,
+        })
     }
 
     /// The scene of a frame.
@@ -142,15 +158,17 @@ impl<'a> Stage<'a> {
     }
 
     /// What pictures of the scene depend on, where nothing has moved.
-    pub fn fingerprint(&self) -> Result<Fingerprint, Failure> {
+    pub fn fingerprint(&mut self) -> Result<Fingerprint, Failure> {
         let outcome = resolve_within(self.scene.clone(), &limits::resolve_limits(&self.typed.reading.limits));
         let mut resolved = outcome.resolved.ok_or(Failure::Reported)?;
         if self.typed.missing_texture == MissingTexture::White {
             input::whiten(&mut resolved, &self.disk, true);
         }
         Extras::new(self.plan, &mut resolved, &self.sources)?;
-        let textures = self.textures(&resolved)?;
-        Ok(Fingerprint::of(&resolved, &textures, &self.plan.options))
+        let textures = self.load_textures(&resolved)?;
+        let fingerprint = Fingerprint::of(&resolved, &textures, &self.plan.options);
+        self.textures = Some(textures);
+        Ok(fingerprint)
     }
 
     fn camera_of(&self, frame: u32) -> Result<Camera, Failure> {
@@ -161,7 +179,7 @@ impl<'a> Stage<'a> {
     }
 
     /// The textures that a scene asks for.
-    pub fn textures(&self, resolved: &Resolved) -> Result<Textures, Failure> {
+    fn load_textures(&self, resolved: &Resolved) -> Result<Textures, Failure> {
         Textures::load(resolved, &self.disk, &self.plan.prepare).map_err(|faults| {
             self.messages.print(&faults, &self.sources);
             Failure::Reported
@@ -185,7 +203,10 @@ impl<'a> Stage<'a> {
                     Some(&self.plan.options),
                     &self.typed.reading.limits,
                 )?;
-                let textures = self.textures(&resolved)?;
+                let textures = match self.textures.take() {
+                    Some(textures) => textures,
+                    None => self.load_textures(&resolved)?,
+                };
                 World::build(resolved, textures, &self.plan.prepare).map_err(refused)?
             }
             Some(mut world) if self.moving.is_empty() => {

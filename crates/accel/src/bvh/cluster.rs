@@ -1,9 +1,10 @@
 //! References sorted into the cells of a grid, so that the upper levels of a tree move clusters instead of references.
 //!
 //! Parting by the surface-area heuristic looks at every reference once a level, about 22 ns each, over some fourteen
-//! levels from 2^16 references down to a leaf. Sorted into cells of about sixteen first, which costs less than one
-//! level, the ten levels above the cells part clusters: sixteen times fewer. Clusters are as large as the references
-//! in them, not as the cells, and the levels below part references as before, so that the tree is nearly as good.
+//! levels from 2^16 references down to a leaf. Sorted into cells of about eight first, which costs less than one
+//! level, the levels down to some hundred references part clusters: eight times fewer. Clusters are as large as the
+//! references in them, not as the cells, and the levels below part references as before, so that the tree is nearly as
+//! good.
 //! (The idea is that of Garanzha, Pantaleoni and McAllister, "Simpler and faster HLBVH with work queues", 2011; they
 //! sort along a Morton curve and we into a grid, since the clusters are ordered by the parting anyway.)
 
@@ -84,7 +85,7 @@ pub struct Clusters {
     pub clusters: Vec<Cluster>,
 }
 
-/// So many references a cell, were they spread evenly.
+/// The binary logarithm of how many references a cell has, were they spread evenly.
 const SPREAD: u32 = 3;
 
 impl Clusters {

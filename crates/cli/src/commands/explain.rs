@@ -9,6 +9,7 @@ use dotray::render::Silent;
 use dotray::render::World;
 use dotray::render::camera::Camera;
 use dotray::render::inspect::RayNode;
+use dotray::render::on_threads;
 use dotray::render::render;
 use dotray::render::trace::Tracer;
 use dotray::scene::Resolved;
@@ -50,7 +51,8 @@ pub fn run(typed: &ExplainArgs, color: When) -> Result<(), Failure> {
     let options = &plan.options;
     let pixel = aimed_at(typed, options)?;
     let messages = Messages::new(color, false);
-    let Understood { mut resolved, sources, disk, .. } = understand(&plan.input, &typed.reading, messages)?;
+    let Understood { mut resolved, sources, disk, .. } =
+        on_threads(plan.options.threads, || understand(&plan.input, &typed.reading, messages))??;
     if typed.missing_texture == MissingTexture::White {
         input::whiten(&mut resolved, &disk, false);
     }
