@@ -126,6 +126,15 @@ impl Accelerator {
         matches!(self.structure, Structure::Tree(_))
     }
 
+    /// Every leaf that its walks show as a block: the first position and the count. Each position lies in one of them.
+    /// None of an accelerator that shows no blocks.
+    pub fn each_leaf(&self, leaf: &mut dyn FnMut(u32, u32)) {
+        match &self.structure {
+            Structure::Tree(tree) => tree.each_leaf(leaf),
+            Structure::Brute | Structure::Octree(_) | Structure::Bsp(_) => {}
+        }
+    }
+
     /// The bytes it holds.
     pub fn memory(&self) -> usize {
         size_of::<Self>()
@@ -179,7 +188,7 @@ impl Accelerator {
 
     /// Walks every ray of the batch. `level` says which instructions kernels may use; the calls to the batch are the
     /// same in effect for every level and kind.
-    pub fn walk(&self, level: Level, queries: &Queries<'_>, batch: &mut dyn Batch) {
+    pub fn walk<B: Batch>(&self, level: Level, queries: &Queries<'_>, batch: &mut B) {
         match &self.structure {
             Structure::Brute => brute::walk(self.items, queries, batch),
             Structure::Tree(tree) => {
@@ -202,7 +211,7 @@ impl Accelerator {
 impl Accelerator {
     /// The same as [`Accelerator::walk`], for rays that start and run alike (neighbours from the eye, or from a
     /// surface to one light): they share the reading of nodes and leaves. Any rays give the same answers, only slower.
-    pub fn walk_together(&self, level: Level, queries: &Queries<'_>, batch: &mut dyn Batch) {
+    pub fn walk_together<B: Batch>(&self, level: Level, queries: &Queries<'_>, batch: &mut B) {
         match &self.structure {
             Structure::Tree(tree) if queries.len() > 1 => {
                 dispatch!(level, simd => bvh::beam::walk(simd, tree, queries, batch));
@@ -214,7 +223,7 @@ impl Accelerator {
     }
 
     /// One or the other, as the caller knows its rays.
-    pub fn walk_rays(&self, level: Level, queries: &Queries<'_>, batch: &mut dyn Batch, together: bool) {
+    pub fn walk_rays<B: Batch>(&self, level: Level, queries: &Queries<'_>, batch: &mut B, together: bool) {
         if together {
             self.walk_together(level, queries, batch);
         } else {

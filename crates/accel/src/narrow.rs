@@ -32,7 +32,6 @@
 //! finite single. The planes of an absent box are infinite (near +inf, far -inf, whatever the sign), and
 //! inf * v' - q is infinite with the right sign. So `min` and `max` never see a NaN, about which x86 and NEON differ.
 
-use crate::clip::ClippedRay;
 use crate::clip::largest;
 use dotray_geometry::Aabb;
 use dotray_geometry::Vec3;
@@ -154,41 +153,6 @@ impl Frame {
             2.0 * self.slack.relative * f64::from(origin.abs()) + slack * self.slack.absolute * self.scale;
         (pad as f32).next_up()
     }
-
-    /// The ray from where it enters the scene.
-    #[inline(always)]
-    pub fn narrow_ray(&self, ray: &ClippedRay) -> NarrowRay {
-        let center = self.center.to_array();
-        let mut narrow = NarrowRay {
-            origin: [0.0; 3],
-            direction: [0.0; 3],
-            bound: 0.0,
-            inverse: [0.0; 3],
-            inverse_far: [0.0; 3],
-            near_offset: [0.0; 3],
-            far_offset: [0.0; 3],
-            far_side: [0; 3],
-            start: ray.start,
-            scale: self.scale,
-            slack: ray.slack * self.slack.absolute,
-            widening: self.widening(),
-        };
-        for axis in 0..3 {
-            let inverse = ray.inverse[axis];
-            let origin = (ray.origin[axis] - center[axis] + ray.start * ray.direction[axis]) * self.scale;
-            let pad = self.slack.relative * origin.abs() + narrow.slack * self.scale;
-            let pad = pad.copysign(inverse);
-            let inverse_far = inverse * narrow.widening;
-            narrow.origin[axis] = origin as f32;
-            narrow.direction[axis] = ray.direction[axis] as f32;
-            narrow.inverse[axis] = inverse as f32;
-            narrow.inverse_far[axis] = inverse_far as f32;
-            narrow.near_offset[axis] = finite((origin + pad) * inverse, f32::MAX);
-            narrow.far_offset[axis] = finite((origin - pad) * inverse_far, f32::MIN);
-            narrow.far_side[axis] = usize::from(inverse > 0.0);
-        }
-        narrow
-    }
 }
 
 /// A ray in the frame, in single precision, ready for the test of eight boxes.
@@ -210,10 +174,10 @@ pub struct NarrowRay {
     pub far_offset: [f32; 3],
     /// Which side of a box the ray leaves through: 0 the low one, 1 the high one.
     pub far_side: [usize; 3],
-    start: f64,
-    scale: f64,
-    slack: f64,
-    widening: f64,
+    pub(crate) start: f64,
+    pub(crate) scale: f64,
+    pub(crate) slack: f64,
+    pub(crate) widening: f64,
 }
 
 impl NarrowRay {
@@ -251,12 +215,6 @@ fn round_down(x: f64) -> f32 {
 #[inline(always)]
 fn round_up(x: f64) -> f32 {
     -round_down(-x)
-}
-
-/// `x` as a single, cut to the finite ones; `widest` where it is not a number, which rules nothing out.
-#[inline(always)]
-fn finite(x: f64, widest: f32) -> f32 {
-    if x.is_nan() { widest } else { (x as f32).clamp(f32::MIN, f32::MAX) }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::clip::SLACK;
 use crate::clip::TINY;
 use crate::clip::largest;
 use crate::narrow::Frame;
+use crate::narrow::NarrowRay;
 use crate::narrow::bound_in_frame;
 use crate::query::Queries;
 use crate::simd::Simd;
@@ -66,6 +67,38 @@ impl Group {
         slack: [0.0; LANES],
         rays: [0; LANES],
     };
+
+    /// One to eight rays of the batch, by their numbers; those that miss the scene have ended from the start.
+    #[inline(always)]
+    pub(crate) fn of<S: Simd>(simd: S, frame: &Frame, queries: &Queries<'_>, rays: &[u32]) -> Self {
+        WideRays::gather(queries, rays).narrow(simd, frame)
+    }
+
+    /// The ray of a lane, by itself.
+    #[inline(always)]
+    pub(crate) fn ray(&self, frame: &Frame, lane: usize) -> NarrowRay {
+        let lane = lane % LANES;
+        let of = |lanes: &[[f32; LANES]; 3]| [lanes[0][lane], lanes[1][lane], lanes[2][lane]];
+        let inverse = of(&self.inverse);
+        NarrowRay {
+            origin: of(&self.origin),
+            direction: of(&self.direction),
+            bound: self.bound[lane],
+            inverse,
+            inverse_far: of(&self.inverse_far),
+            near_offset: of(&self.near_offset),
+            far_offset: of(&self.far_offset),
+            far_side: [
+                usize::from(inverse[0] > 0.0),
+                usize::from(inverse[1] > 0.0),
+                usize::from(inverse[2] > 0.0),
+            ],
+            start: self.start[lane],
+            scale: frame.scale(),
+            slack: self.slack[lane],
+            widening: frame.widening(),
+        }
+    }
 
     /// Which lanes still look for something, bit by bit.
     #[inline(always)]
@@ -147,9 +180,8 @@ impl WideRays {
             let v = number(1.0) / d;
             let a = (number(low[axis]) - slack - origin[axis]) * v;
             let b = (number(high[axis]) + slack - origin[axis]) * v;
-            let backward = self.direction[axis][0].is_sign_negative();
-            start = start.max(if backward { b } else { a });
-            end = end.min(if backward { a } else { b });
+            start = start.max(a.min(b));
+            end = end.min(a.max(b));
             (direction[axis], inverse[axis]) = (d, v);
         }
         let mut group = Group { rays: self.rays, ..Group::EMPTY };
@@ -158,7 +190,7 @@ impl WideRays {
         for axis in 0..3 {
             let place = (origin[axis] - number(center[axis]) + start * direction[axis]) * scale;
             let pad = place.abs() * number(relative) + slack * number(absolute) * scale;
-            let pad = if self.direction[axis][0].is_sign_negative() { -pad } else { pad };
+            let pad = pad.copysign(inverse[axis]);
             let inverse_far = inverse[axis] * number(widening);
             group.inverse[axis] = singles(simd, inverse[axis]);
             group.inverse_far[axis] = singles(simd, inverse_far);
@@ -233,13 +265,10 @@ impl Packet {
 
     /// Adds up to eight rays of the batch as one group. Rays that miss the scene have ended from the start.
     ///
-    /// It computes what [`ClippedRay`](crate::clip::ClippedRay) and [`Frame::narrow_ray`] compute, a ray a lane; the
-    /// signs of all directions are those of the first ray.
+    /// The signs of all directions must be those of the first ray.
     #[inline(always)]
     pub fn push<S: Simd>(&mut self, simd: S, queries: &Queries<'_>, rays: &[u32]) {
-        let wide = WideRays::gather(queries, rays);
-        let group = wide.narrow(simd, &self.frame);
-        self.groups.push(group);
+        self.groups.push(Group::of(simd, &self.frame, queries, rays));
         self.count += rays.len();
     }
 

@@ -8,6 +8,7 @@ use crate::cull::Spine;
 use crate::form::Form;
 use crate::form::Slot;
 use crate::form::axis_aligned;
+use dotray_accel::Accelerator;
 use dotray_accel::narrow::Frame;
 use dotray_geometry::Aabb;
 use dotray_geometry::Affine;
@@ -97,7 +98,12 @@ const PIECE: usize = 1 << 14;
 impl Baked {
     /// Bakes the shapes of these numbers, one position after another. `material` turns a run and the number written
     /// there into the scene's material number. The result does not depend on the number of threads.
-    pub fn lay(lists: &Lists, numbers: &[u32], material: impl Fn(&Run, i32) -> u32 + Sync) -> Self {
+    pub fn lay(
+        lists: &Lists,
+        numbers: &[u32],
+        accelerator: &Accelerator,
+        material: impl Fn(&Run, i32) -> u32 + Sync,
+    ) -> Self {
         let mut all = Self::default();
         all.reserve(lists, numbers.len());
         all.reserve_forms(lists);
@@ -112,7 +118,7 @@ impl Baked {
             let baked: Vec<Self> = pieces.par_chunks(PIECE).map(piece).collect();
             baked.into_iter().for_each(|piece| all.append(piece));
         }
-        all.finish();
+        all.finish(accelerator);
         all
     }
 
@@ -206,9 +212,9 @@ impl Baked {
     }
 
     /// Ends the lists; slots that say nothing go.
-    fn finish(&mut self) {
+    fn finish(&mut self, accelerator: &Accelerator) {
         let count = self.numbers.len();
-        self.culls.finish(count);
+        self.culls.finish(count, accelerator);
         self.only = Form::ALL.into_iter().find(|&form| count > 0 && self.len_of(form) == count);
         if self.only.is_some() {
             self.slots = Vec::new();

@@ -18,7 +18,6 @@ use dotray_accel::Kind;
 use dotray_accel::Level;
 use dotray_accel::Queries;
 use dotray_accel::Settings;
-use dotray_accel::narrow::Frame;
 use dotray_accel::simd::level;
 use dotray_geometry::Aabb;
 use dotray_geometry::Ray;
@@ -128,10 +127,9 @@ impl Caster {
         let mut seconds = vec![(stage, start.elapsed().as_secs_f64())];
 
         let start = Instant::now();
-        let cull_frame = accelerator.shows_blocks().then(|| Frame::around(accelerator.bounds()));
         let material = |run: &Run, written: i32| run.material(written).unwrap_or(default_material);
         let Resolved { runs, frames, files, .. } = resolved;
-        let shapes = Shapes::bake(runs, frames, files, &numbers, cull_frame, material);
+        let shapes = Shapes::bake(runs, frames, files, &numbers, &accelerator, material);
         seconds.push(("bake", start.elapsed().as_secs_f64()));
         Self { shapes, accelerator, seconds, level: level() }
     }
@@ -149,7 +147,7 @@ impl Caster {
     /// pixels, shadow rays to one light): they then share most of the work. The answers are the same.
     pub fn nearest(&self, queries: &Queries<'_>, together: bool) -> Vec<Option<Nearest>> {
         let mut buffers = NearestBuffers::default();
-        let mut batch = NearestBatch::new(self.level, &self.shapes, *queries, &mut buffers);
+        let mut batch = NearestBatch::new(&self.shapes, *queries, &mut buffers);
         self.accelerator.walk_rays(self.level, queries, &mut batch, together);
         buffers.found
     }
@@ -157,7 +155,7 @@ impl Caster {
     /// Whether anything lies on each ray; `together` as for [`Caster::nearest`].
     pub fn occluded(&self, queries: &Queries<'_>, together: bool) -> Vec<bool> {
         let mut buffers = ShadowBuffers::default();
-        let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| false, &mut buffers);
+        let mut batch = ShadowBatch::new(&self.shapes, *queries, &|_| false, &mut buffers);
         self.accelerator.walk_rays(self.level, queries, &mut batch, together);
         buffers.blockers.iter().map(|&blocker| blocker != UNBLOCKED).collect()
     }
@@ -167,7 +165,7 @@ impl Caster {
     pub fn crossings(&self, queries: &Queries<'_>, together: bool) -> Vec<Crossing> {
         let mut buffers = ShadowBuffers::default();
         // To a shadow ray for which everything is see-through nothing is hidden.
-        let mut batch = ShadowBatch::new(self.level, &self.shapes, *queries, |_| true, &mut buffers);
+        let mut batch = ShadowBatch::new(&self.shapes, *queries, &|_| true, &mut buffers);
         self.accelerator.walk_rays(self.level, queries, &mut batch, together);
         batch.finish();
         buffers.crossings

@@ -10,9 +10,11 @@
 //!   sum of both is allowed; the plane's normal is computed from the rounded edges, so that what depends on it is off
 //!   by less than 60 u times the product of their lengths.
 //!
-//! The numbers stand side by side, a list a coordinate and a place a position, so that the same arithmetic serves
-//! eight shapes of a leaf against one ray (lanes are shapes) and one shape against eight rays (lanes are rays).
+//! The numbers of a leaf's shapes stand together and, within the leaf, coordinate by coordinate, so that the same
+//! arithmetic serves eight shapes of a leaf against one ray (lanes are shapes) and one shape against eight rays (lanes
+//! are rays), and a leaf touches few cache lines.
 
+use dotray_accel::Accelerator;
 use dotray_accel::narrow::Frame;
 use dotray_accel::narrow::NarrowRay;
 use dotray_accel::packet::GROUPS;
@@ -113,41 +115,116 @@ fn side(direction: &[f32; LANES]) -> usize {
     usize::from(!direction[0].is_sign_negative())
 }
 
-/// What rules shapes out, by position. A list stays empty while no shape needs it, and holds what rules nothing out
-/// at the positions of shapes that do not.
-#[derive(Debug, Default)]
-pub struct Culls {
-    /// Balls: the centre and the reach.
-    balls: [Vec<f32>; 4],
-    /// Round bars in their balls: the axis and the reach.
-    bars: [Vec<f32>; 4],
-    /// Axis-aligned boxes: the low and the high planes.
-    boxes: [Vec<f32>; 6],
-    /// Triangles: a corner and the two edges that leave it.
-    corners: [Vec<f32>; 9],
+/// Numbers of shapes, `N` a position; empty while no shape needs them.
+///
+/// They are put down shape by shape. [`Table::finish`] then turns each leaf's round in its place: all first numbers of
+/// the leaf's shapes, then all second ones, and so on.
+#[derive(Debug)]
+struct Table<const N: usize> {
+    numbers: Vec<f32>,
+    /// What rules nothing out: for positions of shapes that do not need the table.
+    any: [f32; N],
 }
 
-const ANY_BALL: [f32; 4] = [0.0, 0.0, 0.0, f32::INFINITY];
+impl<const N: usize> Table<N> {
+    const fn new(any: [f32; N]) -> Self {
+        Self { numbers: Vec::new(), any }
+    }
 
-/// Across an axis of no length every distance is 0.
-const ANY_BAR: [f32; 4] = [0.0; 4];
+    /// Fills up to `position`.
+    fn fill(&mut self, position: usize) {
+        while self.numbers.len() < N * position {
+            self.numbers.extend_from_slice(&self.any);
+        }
+    }
 
-const ANY_BOX: [f32; 6] = [f32::MIN, f32::MIN, f32::MIN, f32::MAX, f32::MAX, f32::MAX];
+    fn put(&mut self, position: usize, numbers: [f32; N]) {
+        self.fill(position);
+        self.numbers.extend_from_slice(&numbers);
+    }
 
-/// A triangle without an area lies along every ray.
-const ANY_CORNER: [f32; 9] = [0.0; 9];
+    /// Makes room for so many shapes, if any.
+    fn reserve(&mut self, count: usize) {
+        if count > 0 {
+            self.numbers.reserve_exact(N * count + LANES);
+        }
+    }
 
-/// Puts numbers at a position, behind places that rule nothing out.
-fn put<const N: usize>(lists: &mut [Vec<f32>; N], position: usize, any: [f32; N], numbers: [f32; N]) {
-    fill(lists, position, any);
-    for (list, number) in lists.iter_mut().zip(numbers) {
-        list.push(number);
+    /// Appends what was put down from position 0 on elsewhere, from `first` on.
+    fn append(&mut self, first: usize, mut other: Self) {
+        if !other.numbers.is_empty() {
+            self.fill(first);
+            self.numbers.append(&mut other.numbers);
+        }
+    }
+
+    /// Ends the table at `count` positions, and turns its leaves round. Lanes behind a leaf's last shape read numbers of
+    /// the next leaf, or of the few that are put behind the last one.
+    fn finish(&mut self, count: usize, accelerator: &Accelerator) {
+        if self.numbers.is_empty() {
+            return;
+        }
+        self.numbers.reserve_exact(N * count + LANES - self.numbers.len());
+        self.fill(count);
+        accelerator.each_leaf(&mut |first, count| {
+            let (first, count) = (first as usize, count as usize);
+            let mut turned = [[0.0; LANES]; N];
+            let leaf = &mut self.numbers[N * first..N * (first + count)];
+            for (lane, shape) in leaf.chunks_exact(N).enumerate() {
+                (0..N).for_each(|number| turned[number][lane % LANES] = shape[number]);
+            }
+            for (row, numbers) in leaf.chunks_exact_mut(count).zip(&turned) {
+                row.copy_from_slice(&numbers[..count]);
+            }
+        });
+        self.numbers.extend([0.0; LANES]);
+    }
+
+    /// One number of every shape of a leaf, a lane each.
+    #[inline(always)]
+    fn of_all<S: Simd>(&self, simd: S, leaf: Leaf, number: usize) -> f32x8<S> {
+        let start = N * leaf.first + number * leaf.count;
+        f32x8::from_slice(simd, &self.numbers[start..start + LANES])
+    }
+
+    /// One number of one shape of a leaf, in all lanes.
+    #[inline(always)]
+    fn of_one<S: Simd>(&self, simd: S, leaf: Leaf, number: usize) -> f32x8<S> {
+        f32x8::splat(simd, self.numbers[N * leaf.first + number * leaf.count + leaf.shape])
     }
 }
 
-fn fill<const N: usize>(lists: &mut [Vec<f32>; N], len: usize, any: [f32; N]) {
-    for (list, number) in lists.iter_mut().zip(any) {
-        list.resize(len, number);
+/// A leaf, and one of its shapes where one is asked about.
+#[derive(Clone, Copy, Debug)]
+struct Leaf {
+    first: usize,
+    count: usize,
+    shape: usize,
+}
+
+/// What rules shapes out, by position.
+#[derive(Debug)]
+pub struct Culls {
+    /// Balls: the centre and the reach.
+    balls: Table<4>,
+    /// Round bars in their balls: the axis and the reach.
+    bars: Table<4>,
+    /// Axis-aligned boxes: the low and the high planes.
+    boxes: Table<6>,
+    /// Triangles: a corner and the two edges that leave it.
+    corners: Table<9>,
+}
+
+impl Default for Culls {
+    fn default() -> Self {
+        Self {
+            balls: Table::new([0.0, 0.0, 0.0, f32::INFINITY]),
+            // Across an axis of no length every distance is 0.
+            bars: Table::new([0.0; 4]),
+            boxes: Table::new([f32::MIN, f32::MIN, f32::MIN, f32::MAX, f32::MAX, f32::MAX]),
+            // A triangle without an area lies along every ray.
+            corners: Table::new([0.0; 9]),
+        }
     }
 }
 
@@ -162,7 +239,7 @@ impl Culls {
     /// A ball of the world.
     pub fn put_ball(&mut self, frame: &Frame, position: usize, center: Vec3, radius: f64) {
         let reach = (radius * frame.scale()) as f32 * (1.0 + MARGIN) + MARGIN;
-        put(&mut self.balls, position, ANY_BALL, joined(frame.point(center), [reach]));
+        self.balls.put(position, joined(frame.point(center), [reach]));
     }
 
     /// What lies around a line of the world.
@@ -170,123 +247,125 @@ impl Culls {
         self.put_ball(frame, position, spine.point, spine.reach);
         let axis = spine.axis.to_array().map(|x| x as f32);
         let reach = (spine.radius * frame.scale()) as f32 * (1.0 + MARGIN);
-        put(&mut self.bars, position, ANY_BAR, joined(axis, [reach]));
+        self.bars.put(position, joined(axis, [reach]));
     }
 
     /// What lies in a box of the world.
     pub fn put_box(&mut self, frame: &Frame, position: usize, bounds: &Aabb) {
         let narrow = frame.narrow(bounds);
-        put(&mut self.boxes, position, ANY_BOX, joined(narrow.low, narrow.high));
+        self.boxes.put(position, joined(narrow.low, narrow.high));
     }
 
     /// A triangle of the world.
     pub fn put_triangle(&mut self, frame: &Frame, position: usize, corners: &[Vec3; 3]) {
         let edge = |i: usize| ((corners[i] - corners[0]) * frame.scale()).to_array().map(|x| x as f32);
         let edges: [f32; 6] = joined(edge(1), edge(2));
-        put(&mut self.corners, position, ANY_CORNER, joined(frame.point(corners[0]), edges));
+        self.corners.put(position, joined(frame.point(corners[0]), edges));
     }
 
     /// Makes room for as many balls and triangles, or for none of them.
     pub fn reserve(&mut self, balls: usize, triangles: usize) {
-        let with_end = |count: usize| if count > 0 { count + LANES } else { 0 };
-        self.balls.iter_mut().for_each(|list| list.reserve_exact(with_end(balls)));
-        self.corners.iter_mut().for_each(|list| list.reserve_exact(with_end(triangles)));
+        self.balls.reserve(balls);
+        self.corners.reserve(triangles);
     }
 
     /// Appends what was put down from position 0 on elsewhere, from `position` on.
     pub fn append(&mut self, position: usize, other: Self) {
-        fn join<const N: usize>(
-            lists: &mut [Vec<f32>; N],
-            first: usize,
-            other: [Vec<f32>; N],
-            any: [f32; N],
-        ) {
-            if !other[0].is_empty() {
-                fill(lists, first, any);
-                lists.iter_mut().zip(other).for_each(|(list, mut other)| list.append(&mut other));
-            }
-        }
-        join(&mut self.balls, position, other.balls, ANY_BALL);
-        join(&mut self.bars, position, other.bars, ANY_BAR);
-        join(&mut self.boxes, position, other.boxes, ANY_BOX);
-        join(&mut self.corners, position, other.corners, ANY_CORNER);
+        self.balls.append(position, other.balls);
+        self.bars.append(position, other.bars);
+        self.boxes.append(position, other.boxes);
+        self.corners.append(position, other.corners);
     }
 
-    /// Ends the lists so that eight places may be read from every one of `count` positions.
-    pub fn finish(&mut self, count: usize) {
-        fn end<const N: usize>(lists: &mut [Vec<f32>; N], len: usize, any: [f32; N]) {
-            if !lists[0].is_empty() {
-                lists.iter_mut().for_each(|list| list.reserve_exact(len - list.len()));
-                fill(lists, len, any);
-            }
-        }
-        end(&mut self.balls, count + LANES, ANY_BALL);
-        end(&mut self.bars, count + LANES, ANY_BAR);
-        end(&mut self.boxes, count + LANES, ANY_BOX);
-        end(&mut self.corners, count + LANES, ANY_CORNER);
+    /// Ends the lists at `count` positions, and lays them out leaf by leaf.
+    pub fn finish(&mut self, count: usize, accelerator: &Accelerator) {
+        self.balls.finish(count, accelerator);
+        self.bars.finish(count, accelerator);
+        self.boxes.finish(count, accelerator);
+        self.corners.finish(count, accelerator);
     }
 
     /// The bytes of the lists.
     pub fn memory(&self) -> u64 {
-        let lists = self.balls.iter().chain(&self.bars).chain(&self.boxes).chain(&self.corners);
-        lists.map(|list| size_of_val(list.as_slice()) as u64).sum()
+        let lists = [&self.balls.numbers, &self.bars.numbers, &self.boxes.numbers, &self.corners.numbers];
+        lists.iter().map(|list| size_of_val(list.as_slice()) as u64).sum()
     }
 
-    /// Which of the `count` shapes from position `first` on (eight at most) the ray may hit, bit by bit.
+    /// Which of the shapes of the leaf of `count` positions from `first` on the ray may hit, bit by bit.
     #[inline(always)]
     pub fn block<S: Simd>(&self, simd: S, ray: &NarrowRay, first: u32, count: u32) -> u32 {
-        let first = first as usize;
         let rays = Rays::of_ray(simd, ray);
-        let get = |list: &Vec<f32>| f32x8::from_slice(simd, &list[first..first + LANES]);
         let present = (1_u32 << count) - 1;
-        present & self.may_hit(simd, &rays, get)
+        present
+            & self.may_hit(
+                simd,
+                &rays,
+                Shown::<true>(Leaf { first: first as usize, count: count as usize, shape: 0 }),
+            )
     }
 
-    /// Which lanes of the groups `active` of a packet may hit the shape at `position`, bit by bit.
+    /// Which lanes of the groups `active` of a packet may hit shape number `shape` of a leaf, bit by bit.
     #[inline(always)]
-    pub fn sweep<S: Simd>(&self, simd: S, position: u32, packet: &Packet, active: u32) -> [u8; GROUPS] {
-        let get = |list: &Vec<f32>| f32x8::splat(simd, list[position as usize]);
+    pub fn sweep<S: Simd>(
+        &self,
+        simd: S,
+        [first, count, shape]: [u32; 3],
+        packet: &Packet,
+        active: u32,
+    ) -> [u8; GROUPS] {
+        let leaf = Leaf { first: first as usize, count: count as usize, shape: shape as usize };
         let mut lanes = [0; GROUPS];
         let mut left = active;
         while left != 0 {
             let group = left.trailing_zeros() as usize % GROUPS;
             left &= left - 1;
             let rays = Rays::of_group(simd, packet.group(group));
-            lanes[group] = self.may_hit(simd, &rays, get) as u8;
+            lanes[group] = self.may_hit(simd, &rays, Shown::<false>(leaf)) as u8;
         }
         lanes
     }
 
-    /// Which lanes may hit; `get` takes the lanes' shapes out of a list. Rays that have ended never do.
+    /// Which lanes may hit. Rays that have ended never do.
     #[inline(always)]
-    fn may_hit<S: Simd>(&self, simd: S, rays: &Rays<S>, get: impl Fn(&Vec<f32>) -> f32x8<S>) -> u32 {
+    fn may_hit<S: Simd, const ALL: bool>(&self, simd: S, rays: &Rays<S>, shown: Shown<ALL>) -> u32 {
         let mut may = rays.bound.simd_ge(f32x8::splat(simd, 0.0));
-        if let [x, y, z, reach] = &self.balls
-            && !x.is_empty()
-        {
-            let center = [get(x), get(y), get(z)];
-            may &= meets_ball(simd, rays, center, get(reach));
-            if let [x, y, z, reach] = &self.bars
-                && !x.is_empty()
-                && may.any_true()
-            {
-                may &= meets_bar(simd, rays, center, [get(x), get(y), get(z)], get(reach));
+        let (balls, bars, boxes, corners) = (&self.balls, &self.bars, &self.boxes, &self.corners);
+        if !balls.numbers.is_empty() {
+            let center = shown.point(simd, balls, 0);
+            may &= meets_ball(simd, rays, center, shown.number(simd, balls, 3));
+            if !bars.numbers.is_empty() && may.any_true() {
+                may &= meets_bar(simd, rays, center, shown.point(simd, bars, 0), shown.number(simd, bars, 3));
             }
         }
-        if !self.boxes[0].is_empty() && may.any_true() {
-            let low = [get(&self.boxes[0]), get(&self.boxes[1]), get(&self.boxes[2])];
-            let high = [get(&self.boxes[3]), get(&self.boxes[4]), get(&self.boxes[5])];
-            may &= meets_box(simd, rays, low, high);
+        if !boxes.numbers.is_empty() && may.any_true() {
+            may &= meets_box(simd, rays, shown.point(simd, boxes, 0), shown.point(simd, boxes, 3));
         }
-        if let [x, y, z, ux, uy, uz, vx, vy, vz] = &self.corners
-            && !x.is_empty()
-            && may.any_true()
-        {
-            let point = [get(x), get(y), get(z)];
-            let edges = [[get(ux), get(uy), get(uz)], [get(vx), get(vy), get(vz)]];
-            may &= meets_triangle(simd, rays, point, edges);
+        if !corners.numbers.is_empty() && may.any_true() {
+            let edges = [shown.point(simd, corners, 3), shown.point(simd, corners, 6)];
+            may &= meets_triangle(simd, rays, shown.point(simd, corners, 0), edges);
         }
         may.to_bitmask() as u32
+    }
+}
+
+/// What the lanes hold: all shapes of a leaf, or the same one again and again.
+#[derive(Clone, Copy)]
+struct Shown<const ALL: bool>(Leaf);
+
+impl<const ALL: bool> Shown<ALL> {
+    #[inline(always)]
+    fn number<S: Simd, const N: usize>(self, simd: S, table: &Table<N>, number: usize) -> f32x8<S> {
+        if ALL { table.of_all(simd, self.0, number) } else { table.of_one(simd, self.0, number) }
+    }
+
+    /// Three numbers that follow each other.
+    #[inline(always)]
+    fn point<S: Simd, const N: usize>(self, simd: S, table: &Table<N>, number: usize) -> Lanes<S> {
+        [
+            self.number(simd, table, number),
+            self.number(simd, table, number + 1),
+            self.number(simd, table, number + 2),
+        ]
     }
 }
 

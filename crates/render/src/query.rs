@@ -2,12 +2,11 @@
 
 use crate::shapes::Shapes;
 use dotray_accel::Batch;
-use dotray_accel::Level;
 use dotray_accel::Queries;
 use dotray_accel::narrow::NarrowRay;
 use dotray_accel::packet::GROUPS;
 use dotray_accel::packet::Packet;
-use dotray_accel::simd::dispatch;
+use dotray_accel::simd::Simd;
 use dotray_geometry::Hit;
 use dotray_geometry::Ray;
 use dotray_geometry::shape::TriangleRay;
@@ -44,7 +43,6 @@ pub struct NearestBuffers {
 
 /// The nearest hits of many rays.
 pub struct NearestBatch<'a> {
-    level: Level,
     shapes: &'a Shapes,
     queries: Queries<'a>,
     buffers: &'a mut NearestBuffers,
@@ -65,19 +63,15 @@ fn refill<T: Clone>(list: &mut Vec<T>, len: usize, value: T) {
 
 impl<'a> NearestBatch<'a> {
     /// The question for these rays.
-    pub fn new(
-        level: Level,
-        shapes: &'a Shapes,
-        queries: Queries<'a>,
-        buffers: &'a mut NearestBuffers,
-    ) -> Self {
+    pub fn new(shapes: &'a Shapes, queries: Queries<'a>, buffers: &'a mut NearestBuffers) -> Self {
         prepare(shapes, queries.rays, &mut buffers.triangle_rays);
         refill(&mut buffers.found, queries.len(), None);
         refill(&mut buffers.tests, queries.len(), Tests::default());
-        Self { level, shapes, queries, buffers }
+        Self { shapes, queries, buffers }
     }
 
     /// Tests one shape; answers with the new upper bound of t.
+    #[inline(never)]
     fn test(&mut self, i: usize, position: u32, t_max: f64) -> f64 {
         let buffers = &mut *self.buffers;
         buffers.tests[i].shapes += 1;
@@ -104,15 +98,30 @@ impl Batch for NearestBatch<'_> {
         positions.iter().fold(t_max, |t_max, &position| self.test(i, position, t_max))
     }
 
-    fn leaf_block(&mut self, narrow: &NarrowRay, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
-        let left = block(self.level, self.shapes, narrow, first, count);
+    #[inline(always)]
+    fn leaf_block<S: Simd>(
+        &mut self,
+        simd: S,
+        narrow: &NarrowRay,
+        i: usize,
+        [first, count]: [u32; 2],
+        t_max: f64,
+    ) -> f64 {
+        let left = block(simd, self.shapes, narrow, first, count);
         bits(left).fold(t_max, |t_max, lane| self.test(i, first + lane, t_max))
     }
 
-    fn leaf_packet(&mut self, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
+    #[inline(always)]
+    fn leaf_packet<S: Simd>(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        active: u32,
+        [first, count]: [u32; 2],
+    ) -> bool {
         let mut changed = false;
-        for position in first..first + count {
-            let lanes = sweep(self.level, self.shapes, position, packet, active);
+        for (shape, position) in (first..first + count).enumerate() {
+            let lanes = sweep(simd, self.shapes, [first, count, shape as u32], packet, active);
             for group in bits(active).map(|group| group as usize) {
                 for lane in bits(u32::from(lanes[group])).map(|lane| lane as usize) {
                     let (ray, t_max) = (packet.group(group).rays[lane], packet.group(group).t_max[lane]);
@@ -142,19 +151,20 @@ fn bits(mut set: u32) -> impl Iterator<Item = u32> {
 }
 
 /// Which shapes of a leaf the ray may hit, bit by bit.
-#[inline]
-fn block(level: Level, shapes: &Shapes, narrow: &NarrowRay, first: u32, count: u32) -> u32 {
+#[inline(always)]
+fn block<S: Simd>(simd: S, shapes: &Shapes, narrow: &NarrowRay, first: u32, count: u32) -> u32 {
     match shapes.culls() {
-        Some(culls) => dispatch!(level, simd => culls.block(simd, narrow, first, count)),
+        Some(culls) => culls.block(simd, narrow, first, count),
         None => (1 << count) - 1,
     }
 }
 
-/// Which lanes of the active groups may hit the shape at `position`.
-#[inline]
-fn sweep(level: Level, shapes: &Shapes, position: u32, packet: &Packet, active: u32) -> [u8; GROUPS] {
+/// Which lanes of the active groups may hit a shape of a leaf: the leaf's first position and count, and which shape of
+/// it.
+#[inline(always)]
+fn sweep<S: Simd>(simd: S, shapes: &Shapes, shape: [u32; 3], packet: &Packet, active: u32) -> [u8; GROUPS] {
     match shapes.culls() {
-        Some(culls) => dispatch!(level, simd => culls.sweep(simd, position, packet, active)),
+        Some(culls) => culls.sweep(simd, shape, packet, active),
         None => [u8::MAX; GROUPS],
     }
 }
@@ -190,28 +200,26 @@ pub struct ShadowBuffers {
 }
 
 /// The occlusion of many shadow rays.
-pub struct ShadowBatch<'a, F> {
-    level: Level,
+pub struct ShadowBatch<'a> {
     shapes: &'a Shapes,
     queries: Queries<'a>,
-    see_through: F,
+    see_through: &'a dyn Fn(u32) -> bool,
     buffers: &'a mut ShadowBuffers,
 }
 
-impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
+impl<'a> ShadowBatch<'a> {
     /// The question for these rays; `see_through` says of a material whether light passes.
     pub fn new(
-        level: Level,
         shapes: &'a Shapes,
         queries: Queries<'a>,
-        see_through: F,
+        see_through: &'a dyn Fn(u32) -> bool,
         buffers: &'a mut ShadowBuffers,
     ) -> Self {
         prepare(shapes, queries.rays, &mut buffers.triangle_rays);
         refill(&mut buffers.blockers, queries.len(), UNBLOCKED);
         buffers.crossings.clear();
         refill(&mut buffers.tests, queries.len(), Tests::default());
-        Self { level, shapes, queries, see_through, buffers }
+        Self { shapes, queries, see_through, buffers }
     }
 
     /// Brings the crossings into an order that does not depend on the accelerator, each once: octree and BSP show
@@ -226,6 +234,7 @@ impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
     }
 
     /// Tests one shape; answers whether it blocks the ray.
+    #[inline(never)]
     fn blocks(&mut self, i: usize, position: u32) -> bool {
         let buffers = &mut *self.buffers;
         buffers.tests[i].shapes += 1;
@@ -247,7 +256,7 @@ impl<'a, F: Fn(u32) -> bool> ShadowBatch<'a, F> {
     }
 }
 
-impl<F: Fn(u32) -> bool> Batch for ShadowBatch<'_, F> {
+impl Batch for ShadowBatch<'_> {
     fn leaf_range(&mut self, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
         let blocked = (first..first + count).any(|position| self.blocks(i, position));
         if blocked { f64::NEG_INFINITY } else { t_max }
@@ -258,16 +267,31 @@ impl<F: Fn(u32) -> bool> Batch for ShadowBatch<'_, F> {
         if blocked { f64::NEG_INFINITY } else { t_max }
     }
 
-    fn leaf_block(&mut self, narrow: &NarrowRay, i: usize, first: u32, count: u32, t_max: f64) -> f64 {
-        let left = block(self.level, self.shapes, narrow, first, count);
+    #[inline(always)]
+    fn leaf_block<S: Simd>(
+        &mut self,
+        simd: S,
+        narrow: &NarrowRay,
+        i: usize,
+        [first, count]: [u32; 2],
+        t_max: f64,
+    ) -> f64 {
+        let left = block(simd, self.shapes, narrow, first, count);
         let blocked = bits(left).any(|lane| self.blocks(i, first + lane));
         if blocked { f64::NEG_INFINITY } else { t_max }
     }
 
-    fn leaf_packet(&mut self, packet: &mut Packet, active: u32, first: u32, count: u32) -> bool {
+    #[inline(always)]
+    fn leaf_packet<S: Simd>(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        active: u32,
+        [first, count]: [u32; 2],
+    ) -> bool {
         let mut changed = false;
-        for position in first..first + count {
-            let lanes = sweep(self.level, self.shapes, position, packet, active);
+        for (shape, position) in (first..first + count).enumerate() {
+            let lanes = sweep(simd, self.shapes, [first, count, shape as u32], packet, active);
             for group in bits(active).map(|group| group as usize) {
                 for lane in bits(u32::from(lanes[group])).map(|lane| lane as usize) {
                     if self.blocks(packet.group(group).rays[lane] as usize, position) {

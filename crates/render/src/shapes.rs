@@ -8,6 +8,7 @@ use crate::bake::Lists;
 use crate::cull::Culls;
 use crate::estimate::written;
 use crate::form::Form;
+use dotray_accel::Accelerator;
 use dotray_accel::narrow::Frame;
 use dotray_geometry::Crossings;
 use dotray_geometry::Hit;
@@ -40,19 +41,20 @@ pub struct Shapes {
 }
 
 impl Shapes {
-    /// Lays down the shapes of these numbers, position by position. With `cull_frame`, what rules shapes out in
-    /// single precision is laid down as well. `material` turns a run and the number written there into the scene's
+    /// Lays down the shapes of these numbers, position by position, as the accelerator's leaves want them: where it
+    /// shows blocks, what rules shapes out in single precision is laid down as well. `material` turns a run and the number written there into the scene's
     /// material number.
     pub fn bake(
         runs: Vec<Run>,
         frames: Vec<Transform>,
         files: Vec<SceneFile>,
         numbers: &[u32],
-        cull_frame: Option<Frame>,
+        accelerator: &Accelerator,
         material: impl Fn(&Run, i32) -> u32 + Sync,
     ) -> Self {
+        let cull_frame = accelerator.shows_blocks().then(|| Frame::around(accelerator.bounds()));
         let mut lists = Lists { runs, frames, files, cull_frame };
-        let baked = Baked::lay(&lists, numbers, material);
+        let baked = Baked::lay(&lists, numbers, accelerator, material);
         lists.let_go();
         Self { lists, baked }
     }

@@ -248,7 +248,7 @@ impl<'a> Tracer<'a> {
         let t_min = [world.ray_eps];
         let queries = Queries { rays: &stream.rays, t_min: &t_min, t_max: ENDLESS };
         let shapes = &world.caster.shapes;
-        let mut batch = NearestBatch::new(self.level, shapes, queries, &mut self.nearest);
+        let mut batch = NearestBatch::new(shapes, queries, &mut self.nearest);
         world.caster.accelerator.walk_rays(self.level, &queries, &mut batch, together);
         count(&mut self.stats, &self.nearest.tests);
         let filter = self.options.texture_filter;

@@ -32,7 +32,7 @@ impl Waiting {
 
 /// Walks every ray of the batch through the tree, in packets of rays with equal signs.
 #[inline(always)]
-pub fn walk<S: Simd>(simd: S, tree: &Tree, queries: &Queries<'_>, batch: &mut dyn Batch) {
+pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, queries: &Queries<'_>, batch: &mut B) {
     let mut stack = vec![Waiting::NOBODY; tree.stack + WIDTH + 1];
     let mut packet = Packet::new(&tree.frame);
     let (order, ends) = by_octant(queries);
@@ -73,12 +73,12 @@ fn by_octant(queries: &Queries<'_>) -> (Vec<u32>, [usize; 8]) {
 
 /// Walks one packet, tells the batch what it cost, and empties it.
 #[inline(always)]
-fn walk_packet<S: Simd>(
+fn walk_packet<S: Simd, B: Batch>(
     simd: S,
     tree: &Tree,
     stack: &mut [Waiting],
     packet: &mut Packet,
-    batch: &mut dyn Batch,
+    batch: &mut B,
 ) {
     let tests = descend(simd, tree, stack, packet, batch);
     let count = packet.count();
@@ -92,12 +92,12 @@ fn walk_packet<S: Simd>(
 
 /// The walk proper; returns the number of box tests.
 #[inline(always)]
-fn descend<S: Simd>(
+fn descend<S: Simd, B: Batch>(
     simd: S,
     tree: &Tree,
     stack: &mut [Waiting],
     packet: &mut Packet,
-    batch: &mut dyn Batch,
+    batch: &mut B,
 ) -> u64 {
     let beam = Beam::around(packet);
     let (mut alive, mut bound) = packet.alive(simd);
@@ -113,7 +113,7 @@ fn descend<S: Simd>(
         }
         if child.is_leaf() {
             let (first, count) = child.items();
-            if batch.leaf_packet(packet, active, first, count) {
+            if batch.leaf_packet(simd, packet, active, [first, count]) {
                 (alive, bound) = packet.alive(simd);
             }
             continue;

@@ -146,6 +146,16 @@ impl Tree {
         deepest
     }
 
+    /// Every leaf's first position and count.
+    pub fn each_leaf(&self, leaf: &mut dyn FnMut(u32, u32)) {
+        for child in [self.root].into_iter().chain(self.nodes.iter().flat_map(|node| node.children)) {
+            if child.is_leaf() && child != Child::ABSENT {
+                let (first, count) = child.items();
+                leaf(first, count);
+            }
+        }
+    }
+
     /// The bytes it holds.
     pub fn memory(&self) -> usize {
         self.nodes.capacity() * size_of::<WideNode>()

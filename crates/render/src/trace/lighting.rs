@@ -112,7 +112,7 @@ impl Tracer<'_> {
         let see_through = |material| !all_opaque && transmission(material) != Vec3::ZERO;
         let t_min = [world.ray_eps];
         let queries = Queries { rays, t_min: &t_min, t_max: ends };
-        let mut batch = ShadowBatch::new(self.level, &world.caster.shapes, queries, see_through, buffers);
+        let mut batch = ShadowBatch::new(&world.caster.shapes, queries, &see_through, buffers);
         world.caster.accelerator.walk_rays(self.level, &queries, &mut batch, together);
         batch.finish();
         count(&mut self.stats, &buffers.tests);
