@@ -1,4 +1,4 @@
-//! Rays that travel together: groups of eight, one ray a lane, up to sixteen groups a packet.
+//! Rays that travel together: groups of sixteen, one ray a lane, up to eight groups a packet.
 //!
 //! All rays of a packet have directions of the same signs, so that they meet the planes of any box in one order.
 //! A lane without a ray, or whose ray has ended, has a bound below 0, which no box test passes.
@@ -12,23 +12,47 @@ use crate::narrow::bound_in_frame;
 use crate::query::Queries;
 use crate::simd::Simd;
 use crate::simd::f32x8;
+use crate::simd::f32x16;
 use crate::simd::f64x8;
-use crate::simd::mask32x8;
+use crate::simd::mask32x16;
 use crate::simd::prelude::*;
 
 /// Rays in a group.
-pub const LANES: usize = 8;
+pub const LANES: usize = 16;
 
 /// Groups in a packet.
-pub const GROUPS: usize = 16;
+pub const GROUPS: usize = 8;
+
+/// Some rays of a packet.
+#[derive(Clone, Copy, Debug)]
+pub struct Members {
+    /// The lanes of each group, bit by bit.
+    pub lanes: [u16; GROUPS],
+    /// The groups that have any, bit by bit.
+    pub groups: u32,
+    /// How many rays there are.
+    pub count: u32,
+}
+
+impl Members {
+    /// No ray.
+    pub const NONE: Self = Self { lanes: [0; GROUPS], groups: 0, count: 0 };
+
+    #[inline(always)]
+    fn add(&mut self, group: usize, lanes: u64) {
+        self.lanes[group] = lanes as u16;
+        self.groups |= u32::from(lanes != 0) << group;
+        self.count += lanes.count_ones();
+    }
+}
 
 /// The bound of a lane that looks for nothing.
 const ENDED: f32 = -1.0;
 
-/// Eight rays, a lane each; single precision is in the frame of [`Frame`], t' counts from where each ray enters the
+/// Sixteen rays, a lane each; single precision is in the frame of [`Frame`], t' counts from where each ray enters the
 /// scene.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub struct Group {
     /// The reciprocals of the directions.
     pub inverse: [[f32; LANES]; 3],
@@ -68,7 +92,7 @@ impl Group {
         rays: [0; LANES],
     };
 
-    /// One to eight rays of the batch, by their numbers; those that miss the scene have ended from the start.
+    /// One to sixteen rays of the batch, by their numbers; those that miss the scene have ended from the start.
     #[inline(always)]
     pub(crate) fn of<S: Simd>(simd: S, frame: &Frame, queries: &Queries<'_>, rays: &[u32]) -> Self {
         WideRays::gather(queries, rays).narrow(simd, frame)
@@ -108,21 +132,25 @@ impl Group {
 
     /// Which lanes meet the box with these near and far planes.
     #[inline(always)]
-    pub fn meets<S: Simd>(&self, simd: S, near: [f32; 3], far: [f32; 3]) -> mask32x8<S> {
-        let load = |lanes: &[f32; LANES]| f32x8::load_array_ref(simd, lanes);
+    pub fn meets<S: Simd>(&self, simd: S, near: [f32; 3], far: [f32; 3]) -> mask32x16<S> {
+        let load = |lanes: &[f32; LANES]| f32x16::load_array_ref(simd, lanes);
         let enter = |axis: usize| {
-            f32x8::splat(simd, near[axis]).mul_sub(load(&self.inverse[axis]), load(&self.near_offset[axis]))
+            f32x16::splat(simd, near[axis]).mul_sub(load(&self.inverse[axis]), load(&self.near_offset[axis]))
         };
         let leave = |axis: usize| {
-            f32x8::splat(simd, far[axis]).mul_sub(load(&self.inverse_far[axis]), load(&self.far_offset[axis]))
+            f32x16::splat(simd, far[axis])
+                .mul_sub(load(&self.inverse_far[axis]), load(&self.far_offset[axis]))
         };
-        let enter = enter(0).max(enter(1)).max(enter(2).max(f32x8::splat(simd, 0.0)));
+        let enter = enter(0).max(enter(1)).max(enter(2).max(f32x16::splat(simd, 0.0)));
         let leave = leave(0).min(leave(1)).min(leave(2).min(load(&self.bound)));
         enter.simd_le(leave)
     }
 }
 
-/// Eight rays in double precision, a lane each.
+/// As many lanes are computed at once in double precision.
+const HALF: usize = 8;
+
+/// Sixteen rays in double precision, a lane each.
 #[repr(C, align(64))]
 struct WideRays {
     origin: [[f64; LANES]; 3],
@@ -133,7 +161,7 @@ struct WideRays {
 }
 
 impl WideRays {
-    /// The rays of these numbers, one to eight; lanes without a ray hold the first one, which has ended.
+    /// The rays of these numbers, one to sixteen; lanes without a ray hold the first one, which has ended.
     #[inline(always)]
     fn gather(queries: &Queries<'_>, rays: &[u32]) -> Self {
         let mut wide = Self {
@@ -161,8 +189,19 @@ impl WideRays {
     /// The rays cut to the scene and in single precision: [`crate::clip`] and [`crate::narrow`] give the reasons.
     #[inline(always)]
     fn narrow<S: Simd>(&self, simd: S, frame: &Frame) -> Group {
+        let mut group = Group { rays: self.rays, ..Group::EMPTY };
+        for first in (0..LANES).step_by(HALF) {
+            self.narrow_half(simd, frame, first, &mut group);
+        }
+        group
+    }
+
+    /// The lanes from `first` on.
+    #[inline(always)]
+    fn narrow_half<S: Simd>(&self, simd: S, frame: &Frame, first: usize, group: &mut Group) {
         let number = |x: f64| f64x8::splat(simd, x);
-        let load = |lanes: &[f64; LANES]| f64x8::load_array_ref(simd, lanes);
+        let lanes = first..first + HALF;
+        let load = |all: &[f64; LANES]| f64x8::from_slice(simd, &all[first..first + HALF]);
         let scene = frame.scene();
         let (low, high, center) = (scene.min.to_array(), scene.max.to_array(), frame.center());
         let (relative, absolute) = frame.slack_shares();
@@ -184,34 +223,35 @@ impl WideRays {
             end = end.min(a.max(b));
             (direction[axis], inverse[axis]) = (d, v);
         }
-        let mut group = Group { rays: self.rays, ..Group::EMPTY };
         let widening = frame.widening();
         let scale = number(frame.scale());
+        let store = |all: &mut [f32; LANES], x: f64x8<S>| {
+            all[first..first + HALF].copy_from_slice(&singles(simd, x));
+        };
         for axis in 0..3 {
             let place = (origin[axis] - number(center[axis]) + start * direction[axis]) * scale;
             let pad = place.abs() * number(relative) + slack * number(absolute) * scale;
             let pad = pad.copysign(inverse[axis]);
             let inverse_far = inverse[axis] * number(widening);
-            group.inverse[axis] = singles(simd, inverse[axis]);
-            group.inverse_far[axis] = singles(simd, inverse_far);
-            group.near_offset[axis] = singles(simd, finite(simd, (place + pad) * inverse[axis], number(MAX)));
-            group.far_offset[axis] = singles(simd, finite(simd, (place - pad) * inverse_far, number(-MAX)));
-            group.origin[axis] = singles(simd, place);
-            group.direction[axis] = singles(simd, direction[axis]);
+            store(&mut group.inverse[axis], inverse[axis]);
+            store(&mut group.inverse_far[axis], inverse_far);
+            store(&mut group.near_offset[axis], finite(simd, (place + pad) * inverse[axis], number(MAX)));
+            store(&mut group.far_offset[axis], finite(simd, (place - pad) * inverse_far, number(-MAX)));
+            store(&mut group.origin[axis], place);
+            store(&mut group.direction[axis], direction[axis]);
         }
         let slack = slack * number(absolute);
         // Where the rays lie in the scene; never so in a lane without a ray, whose end is -inf.
         let inside = start.simd_le(end).to_bitmask();
         let bound = (t_max - start + slack) * scale * number(widening);
         let bound = singles(simd, finite(simd, bound, number(f64::INFINITY)));
-        for lane in 0..LANES {
-            let met = inside >> lane & 1 == 1;
-            group.bound[lane] = if met { bound[lane].next_up() } else { ENDED };
+        for lane in lanes.clone() {
+            let met = inside >> (lane - first) & 1 == 1;
+            group.bound[lane] = if met { bound[lane - first].next_up() } else { ENDED };
             group.t_max[lane] = if met { self.t_max[lane] } else { f64::NEG_INFINITY };
         }
-        group.start = start.to_array();
-        group.slack = slack.to_array();
-        group
+        group.start[lanes.clone()].copy_from_slice(&start.to_array());
+        group.slack[lanes].copy_from_slice(&slack.to_array());
     }
 }
 
@@ -227,7 +267,7 @@ fn finite<S: Simd>(simd: S, x: f64x8<S>, widest: f64x8<S>) -> f64x8<S> {
 
 /// Each lane as a single, rounded to nearest.
 #[inline(always)]
-fn singles<S: Simd>(simd: S, lanes: f64x8<S>) -> [f32; LANES] {
+fn singles<S: Simd>(simd: S, lanes: f64x8<S>) -> [f32; HALF] {
     let (low, high) = simd.split_f64x8(lanes);
     simd.narrow_f64x4(low, high).to_array()
 }
@@ -263,7 +303,7 @@ impl Packet {
         self.count
     }
 
-    /// Adds up to eight rays of the batch as one group. Rays that miss the scene have ended from the start.
+    /// Adds up to sixteen rays of the batch as one group. Rays that miss the scene have ended from the start.
     ///
     /// The signs of all directions must be those of the first ray.
     #[inline(always)]
@@ -298,27 +338,27 @@ impl Packet {
         };
     }
 
-    /// Which of the groups `active` meet the box with these near and far planes.
+    /// Which lanes of the groups `active` meet the box with these near and far planes.
     #[inline(always)]
-    pub fn meets<S: Simd>(&self, simd: S, active: u32, near: [f32; 3], far: [f32; 3]) -> u32 {
-        let mut met = 0;
+    pub fn meets<S: Simd>(&self, simd: S, active: u32, near: [f32; 3], far: [f32; 3]) -> Members {
+        let mut met = Members::NONE;
         let mut left = active;
         while left != 0 {
-            let group = left.trailing_zeros() as usize;
+            let group = left.trailing_zeros() as usize % GROUPS;
             left &= left - 1;
-            met |= u32::from(self.group(group).meets(simd, near, far).any_true()) << group;
+            met.add(group, self.group(group).meets(simd, near, far).to_bitmask());
         }
         met
     }
 
-    /// Which groups still have a lane that looks for something, and the largest bound of any.
+    /// Which lanes still look for something, and the largest bound of any.
     #[inline(always)]
-    pub fn alive<S: Simd>(&self, simd: S) -> (u32, f32) {
-        let mut alive = 0;
-        let mut largest = f32x8::splat(simd, ENDED);
-        for (g, group) in self.groups().iter().enumerate() {
-            let bound = f32x8::load_array_ref(simd, &group.bound);
-            alive |= u32::from(bound.simd_ge(f32x8::splat(simd, 0.0)).any_true()) << g;
+    pub fn alive<S: Simd>(&self, simd: S) -> (Members, f32) {
+        let mut alive = Members::NONE;
+        let mut largest = f32x16::splat(simd, ENDED);
+        for (number, group) in self.groups().iter().enumerate() {
+            let bound = f32x16::load_array_ref(simd, &group.bound);
+            alive.add(number % GROUPS, bound.simd_ge(f32x16::splat(simd, 0.0)).to_bitmask());
             largest = largest.max(bound);
         }
         (alive, largest.to_array().into_iter().fold(ENDED, f32::max))
@@ -345,7 +385,7 @@ impl Beam {
         let slack = packet.groups.iter().flat_map(|group| group.slack).fold(0.0, f64::max);
         let (mut low, mut high, mut inverse) = ([0.0; 3], [0.0; 3], [[0.0; 2]; 3]);
         for axis in 0..3 {
-            // Lane by lane first: eight comparisons at once.
+            // Lane by lane first: many comparisons at once.
             let mut least = [f32::INFINITY; LANES];
             let mut most = [f32::NEG_INFINITY; LANES];
             let mut slowest = [f32::INFINITY; LANES];

@@ -23,7 +23,7 @@ use dotray_accel::packet::LANES;
 use dotray_accel::packet::Packet;
 use dotray_accel::simd::Simd;
 use dotray_accel::simd::f32x8;
-use dotray_accel::simd::mask32x8;
+use dotray_accel::simd::f32x16;
 use dotray_accel::simd::prelude::*;
 use dotray_geometry::Aabb;
 use dotray_geometry::Affine;
@@ -35,57 +35,59 @@ const MARGIN: f32 = 1.0 / (1 << 17) as f32;
 // No `array::map` over vectors here: the library's loop is not inlined into the function that has the SIMD
 // instructions, and each operation then becomes a call.
 
-type Lanes<S> = [f32x8<S>; 3];
+/// A vector of singles: eight wide where lanes are shapes, as wide as a packet's groups where they are rays.
+trait Singles<S: Simd>: SimdFloat<S, Element = f32> {}
+
+impl<S: Simd, V: SimdFloat<S, Element = f32>> Singles<S> for V {}
+
+/// The most shapes of a leaf.
+const SHAPES: usize = 8;
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, lanes: &[[f32; LANES]; 3]) -> Lanes<S> {
-    [
-        f32x8::load_array_ref(simd, &lanes[0]),
-        f32x8::load_array_ref(simd, &lanes[1]),
-        f32x8::load_array_ref(simd, &lanes[2]),
-    ]
+fn splat<S: Simd, V: Singles<S>>(simd: S, point: [f32; 3]) -> [V; 3] {
+    [V::splat(simd, point[0]), V::splat(simd, point[1]), V::splat(simd, point[2])]
 }
 
 #[inline(always)]
-fn splat<S: Simd>(simd: S, point: [f32; 3]) -> Lanes<S> {
-    [f32x8::splat(simd, point[0]), f32x8::splat(simd, point[1]), f32x8::splat(simd, point[2])]
+fn load<S: Simd, V: Singles<S>>(simd: S, lanes: &[[f32; LANES]; 3]) -> [V; 3] {
+    [V::from_slice(simd, &lanes[0]), V::from_slice(simd, &lanes[1]), V::from_slice(simd, &lanes[2])]
 }
 
 #[inline(always)]
-fn dot<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> f32x8<S> {
+fn dot<S: Simd, V: Singles<S>>(a: [V; 3], b: [V; 3]) -> V {
     a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
 }
 
 #[inline(always)]
-fn cross<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
+fn cross<S: Simd, V: Singles<S>>(a: [V; 3], b: [V; 3]) -> [V; 3] {
     [a[1].mul_sub(b[2], a[2] * b[1]), a[2].mul_sub(b[0], a[0] * b[2]), a[0].mul_sub(b[1], a[1] * b[0])]
 }
 
 #[inline(always)]
-fn sub<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
+fn sub<S: Simd, V: Singles<S>>(a: [V; 3], b: [V; 3]) -> [V; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// Eight rays, or one ray eight times.
-struct Rays<S: Simd> {
-    origin: Lanes<S>,
-    direction: Lanes<S>,
-    bound: f32x8<S>,
-    inverse: Lanes<S>,
-    inverse_far: Lanes<S>,
-    near_offset: Lanes<S>,
-    far_offset: Lanes<S>,
+/// Many rays, or one ray many times.
+struct Rays<V> {
+    origin: [V; 3],
+    direction: [V; 3],
+    bound: V,
+    inverse: [V; 3],
+    inverse_far: [V; 3],
+    near_offset: [V; 3],
+    far_offset: [V; 3],
     /// Which side of a box each ray leaves through: 0 the low one, 1 the high one.
     far_side: [usize; 3],
 }
 
-impl<S: Simd> Rays<S> {
+impl<S: Simd> Rays<f32x16<S>> {
     #[inline(always)]
     fn of_group(simd: S, group: &Group) -> Self {
         Self {
             origin: load(simd, &group.origin),
             direction: load(simd, &group.direction),
-            bound: f32x8::load_array_ref(simd, &group.bound),
+            bound: f32x16::load_array_ref(simd, &group.bound),
             inverse: load(simd, &group.inverse),
             inverse_far: load(simd, &group.inverse_far),
             near_offset: load(simd, &group.near_offset),
@@ -94,7 +96,9 @@ impl<S: Simd> Rays<S> {
             far_side: [side(&group.direction[0]), side(&group.direction[1]), side(&group.direction[2])],
         }
     }
+}
 
+impl<S: Simd> Rays<f32x8<S>> {
     #[inline(always)]
     fn of_ray(simd: S, ray: &NarrowRay) -> Self {
         Self {
@@ -146,7 +150,7 @@ impl<const N: usize> Table<N> {
     /// Makes room for so many shapes, if any.
     fn reserve(&mut self, count: usize) {
         if count > 0 {
-            self.numbers.reserve_exact(N * count + LANES);
+            self.numbers.reserve_exact(N * count + SHAPES);
         }
     }
 
@@ -164,33 +168,33 @@ impl<const N: usize> Table<N> {
         if self.numbers.is_empty() {
             return;
         }
-        self.numbers.reserve_exact(N * count + LANES - self.numbers.len());
+        self.numbers.reserve_exact(N * count + SHAPES - self.numbers.len());
         self.fill(count);
         accelerator.each_leaf(&mut |first, count| {
             let (first, count) = (first as usize, count as usize);
-            let mut turned = [[0.0; LANES]; N];
+            let mut turned = [[0.0; SHAPES]; N];
             let leaf = &mut self.numbers[N * first..N * (first + count)];
             for (lane, shape) in leaf.chunks_exact(N).enumerate() {
-                (0..N).for_each(|number| turned[number][lane % LANES] = shape[number]);
+                (0..N).for_each(|number| turned[number][lane % SHAPES] = shape[number]);
             }
             for (row, numbers) in leaf.chunks_exact_mut(count).zip(&turned) {
                 row.copy_from_slice(&numbers[..count]);
             }
         });
-        self.numbers.extend([0.0; LANES]);
+        self.numbers.extend([0.0; SHAPES]);
     }
 
     /// One number of every shape of a leaf, a lane each.
     #[inline(always)]
-    fn of_all<S: Simd>(&self, simd: S, leaf: Leaf, number: usize) -> f32x8<S> {
+    fn of_all<S: Simd, V: Singles<S>>(&self, simd: S, leaf: Leaf, number: usize) -> V {
         let start = N * leaf.first + number * leaf.count;
-        f32x8::from_slice(simd, &self.numbers[start..start + LANES])
+        V::from_slice(simd, &self.numbers[start..start + SHAPES])
     }
 
     /// One number of one shape of a leaf, in all lanes.
     #[inline(always)]
-    fn of_one<S: Simd>(&self, simd: S, leaf: Leaf, number: usize) -> f32x8<S> {
-        f32x8::splat(simd, self.numbers[N * leaf.first + number * leaf.count + leaf.shape])
+    fn of_one<S: Simd, V: Singles<S>>(&self, simd: S, leaf: Leaf, number: usize) -> V {
+        V::splat(simd, self.numbers[N * leaf.first + number * leaf.count + leaf.shape])
     }
 }
 
@@ -312,7 +316,7 @@ impl Culls {
         [first, count, shape]: [u32; 3],
         packet: &Packet,
         active: u32,
-    ) -> [u8; GROUPS] {
+    ) -> [u16; GROUPS] {
         let leaf = Leaf { first: first as usize, count: count as usize, shape: shape as usize };
         let mut lanes = [0; GROUPS];
         let mut left = active;
@@ -320,15 +324,20 @@ impl Culls {
             let group = left.trailing_zeros() as usize % GROUPS;
             left &= left - 1;
             let rays = Rays::of_group(simd, packet.group(group));
-            lanes[group] = self.may_hit(simd, &rays, Shown::<false>(leaf)) as u8;
+            lanes[group] = self.may_hit(simd, &rays, Shown::<false>(leaf)) as u16;
         }
         lanes
     }
 
     /// Which lanes may hit. Rays that have ended never do.
     #[inline(always)]
-    fn may_hit<S: Simd, const ALL: bool>(&self, simd: S, rays: &Rays<S>, shown: Shown<ALL>) -> u32 {
-        let mut may = rays.bound.simd_ge(f32x8::splat(simd, 0.0));
+    fn may_hit<S: Simd, V: Singles<S>, const ALL: bool>(
+        &self,
+        simd: S,
+        rays: &Rays<V>,
+        shown: Shown<ALL>,
+    ) -> u32 {
+        let mut may = rays.bound.simd_ge(V::splat(simd, 0.0));
         let (balls, bars, boxes, corners) = (&self.balls, &self.bars, &self.boxes, &self.corners);
         if !balls.numbers.is_empty() {
             let center = shown.point(simd, balls, 0);
@@ -354,13 +363,18 @@ struct Shown<const ALL: bool>(Leaf);
 
 impl<const ALL: bool> Shown<ALL> {
     #[inline(always)]
-    fn number<S: Simd, const N: usize>(self, simd: S, table: &Table<N>, number: usize) -> f32x8<S> {
+    fn number<S: Simd, V: Singles<S>, const N: usize>(self, simd: S, table: &Table<N>, number: usize) -> V {
         if ALL { table.of_all(simd, self.0, number) } else { table.of_one(simd, self.0, number) }
     }
 
     /// Three numbers that follow each other.
     #[inline(always)]
-    fn point<S: Simd, const N: usize>(self, simd: S, table: &Table<N>, number: usize) -> Lanes<S> {
+    fn point<S: Simd, V: Singles<S>, const N: usize>(
+        self,
+        simd: S,
+        table: &Table<N>,
+        number: usize,
+    ) -> [V; 3] {
         [
             self.number(simd, table, number),
             self.number(simd, table, number + 1),
@@ -370,12 +384,12 @@ impl<const ALL: bool> Shown<ALL> {
 }
 
 #[inline(always)]
-fn meets_ball<S: Simd>(simd: S, rays: &Rays<S>, center: Lanes<S>, reach: f32x8<S>) -> mask32x8<S> {
+fn meets_ball<S: Simd, V: Singles<S>>(simd: S, rays: &Rays<V>, center: [V; 3], reach: V) -> V::Mask {
     let to_center = sub(center, rays.origin);
     let along = dot(to_center, rays.direction);
     let d = &rays.direction;
     let aside = sub(to_center, [d[0] * along, d[1] * along, d[2] * along]);
-    let margin = f32x8::splat(simd, MARGIN);
+    let margin = V::splat(simd, MARGIN);
     let near = dot(aside, aside).simd_le(reach * reach);
     let ahead = (along + reach).simd_ge(-margin);
     let in_time = (along - reach - margin).simd_le(rays.bound);
@@ -384,23 +398,23 @@ fn meets_ball<S: Simd>(simd: S, rays: &Rays<S>, center: Lanes<S>, reach: f32x8<S
 
 /// A round bar: what has a distance of at most `reach` from an axis through the ball's centre.
 #[inline(always)]
-fn meets_bar<S: Simd>(
+fn meets_bar<S: Simd, V: Singles<S>>(
     simd: S,
-    rays: &Rays<S>,
-    center: Lanes<S>,
-    axis: Lanes<S>,
-    reach: f32x8<S>,
-) -> mask32x8<S> {
+    rays: &Rays<V>,
+    center: [V; 3],
+    axis: [V; 3],
+    reach: V,
+) -> V::Mask {
     let to_center = sub(center, rays.origin);
     let across = cross(rays.direction, axis);
     let distance = dot(to_center, across).abs();
     let length = dot(across, across).sqrt();
-    distance.simd_le(length * reach + f32x8::splat(simd, MARGIN))
+    distance.simd_le(length * reach + V::splat(simd, MARGIN))
 }
 
 #[inline(always)]
-fn meets_box<S: Simd>(simd: S, rays: &Rays<S>, low: Lanes<S>, high: Lanes<S>) -> mask32x8<S> {
-    let mut enter = f32x8::splat(simd, 0.0);
+fn meets_box<S: Simd, V: Singles<S>>(simd: S, rays: &Rays<V>, low: [V; 3], high: [V; 3]) -> V::Mask {
+    let mut enter = V::splat(simd, 0.0);
     let mut leave = rays.bound;
     for axis in 0..3 {
         let (near, far) =
@@ -414,8 +428,13 @@ fn meets_box<S: Simd>(simd: S, rays: &Rays<S>, low: Lanes<S>, high: Lanes<S>) ->
 /// After Möller and Trumbore, 'Fast, minimum storage ray/triangle intersection', 1997, without the division and with
 /// margins.
 #[inline(always)]
-fn meets_triangle<S: Simd>(simd: S, rays: &Rays<S>, point: Lanes<S>, edges: [Lanes<S>; 2]) -> mask32x8<S> {
-    let number = |x: f32| f32x8::splat(simd, x);
+fn meets_triangle<S: Simd, V: Singles<S>>(
+    simd: S,
+    rays: &Rays<V>,
+    point: [V; 3],
+    edges: [[V; 3]; 2],
+) -> V::Mask {
+    let number = |x: f32| V::splat(simd, x);
     let to_point = sub(point, rays.origin);
     let normal = cross(edges[0], edges[1]);
     let turned = cross(to_point, rays.direction);
@@ -427,7 +446,7 @@ fn meets_triangle<S: Simd>(simd: S, rays: &Rays<S>, point: Lanes<S>, edges: [Lan
     let v = -sign * dot(turned, edges[0]);
     let t = sign * dot(normal, to_point);
     // The sum of the coordinates' magnitudes is never less than the length.
-    let length = |e: &Lanes<S>| e[0].abs() + e[1].abs() + e[2].abs();
+    let length = |e: &[V; 3]| e[0].abs() + e[1].abs() + e[2].abs();
     let (first, second) = (length(&edges[0]), length(&edges[1]));
     let margin = number(MARGIN) * (first + second);
     let plane_margin = number(MARGIN) * first * second;

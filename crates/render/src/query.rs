@@ -162,10 +162,10 @@ fn block<S: Simd>(simd: S, shapes: &Shapes, narrow: &NarrowRay, first: u32, coun
 /// Which lanes of the active groups may hit a shape of a leaf: the leaf's first position and count, and which shape of
 /// it.
 #[inline(always)]
-fn sweep<S: Simd>(simd: S, shapes: &Shapes, shape: [u32; 3], packet: &Packet, active: u32) -> [u8; GROUPS] {
+fn sweep<S: Simd>(simd: S, shapes: &Shapes, shape: [u32; 3], packet: &Packet, active: u32) -> [u16; GROUPS] {
     match shapes.culls() {
         Some(culls) => culls.sweep(simd, shape, packet, active),
-        None => [u8::MAX; GROUPS],
+        None => [u16::MAX; GROUPS],
     }
 }
 

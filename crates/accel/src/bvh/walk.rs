@@ -83,22 +83,22 @@ pub fn walk<S: Simd, B: Batch>(
     batch: &mut B,
 ) {
     for first in (0..queries.len()).step_by(LANES) {
-        // Eight rays are made ready at once.
+        // Sixteen rays are made ready at once.
         let count = LANES.min(queries.len() - first);
         let group = Group::of(simd, &tree.frame, queries, &numbers(first)[..count]);
         for lane in 0..count {
             let ray = group.ray(&tree.frame, lane);
-            let tests = if ray.bound < 0.0 {
-                1
-            } else {
-                walk_ray(simd, tree, stack, ray, group.t_max[lane], batch, first + lane)
-            };
+            let mut tests = 1;
+            if ray.bound >= 0.0 {
+                let start = Start { child: tree.root, t_max: group.t_max[lane], ray: first + lane };
+                tests += walk_ray(simd, tree, stack, ray, start, batch).1;
+            }
             batch.finished(first + lane, tests);
         }
     }
 }
 
-/// The numbers of eight rays.
+/// The numbers of sixteen rays.
 #[inline(always)]
 fn numbers(first: usize) -> [u32; LANES] {
     let mut numbers = [first as u32; LANES];
@@ -108,31 +108,39 @@ fn numbers(first: usize) -> [u32; LANES] {
     numbers
 }
 
-/// Walks one ray and returns how many boxes it was tested against.
+/// Where a single ray's walk begins.
+pub struct Start {
+    /// All that stands below is walked.
+    pub child: Child,
+    /// The upper bound of t so far.
+    pub t_max: f64,
+    /// The ray's number in the batch.
+    pub ray: usize,
+}
+
+/// Walks one ray from a child down; returns the new upper bound of t, and how many boxes it was tested against.
 #[inline(always)]
-fn walk_ray<S: Simd, B: Batch>(
+pub fn walk_ray<S: Simd, B: Batch>(
     simd: S,
     tree: &Tree,
     stack: &mut [u64],
     mut narrow: NarrowRay,
-    mut t_max: f64,
+    Start { mut child, mut t_max, ray: i }: Start,
     batch: &mut B,
-    i: usize,
-) -> u64 {
+) -> (f64, u64) {
     let ray = SpreadRay::new(simd, &narrow);
     let mut nodes = 0;
     let mut top = 0;
-    let mut child = tree.root;
     'walk: loop {
         if child.is_leaf() {
             // A leaf: the caller tests the items, and may bring the bound nearer.
             let (first, count) = child.items();
             let answer = batch.leaf_block(simd, &narrow, i, [first, count], t_max);
-            if answer == f64::NEG_INFINITY {
-                break;
-            }
             if answer < t_max {
                 t_max = answer;
+                if t_max == f64::NEG_INFINITY {
+                    break;
+                }
                 narrow.set_bound(t_max);
             }
         } else {
@@ -158,7 +166,7 @@ fn walk_ray<S: Simd, B: Batch>(
             }
         }
     }
-    8 * nodes + 1
+    (t_max, WIDTH as u64 * nodes)
 }
 
 /// Puts a node's children that the ray meets (one at least) on the stack, the nearest on top; takes that one off
