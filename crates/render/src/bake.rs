@@ -18,6 +18,7 @@ use dotray_geometry::Cylinder;
 use dotray_geometry::Shape;
 use dotray_geometry::Sphere;
 use dotray_geometry::Transform;
+use dotray_geometry::Triangle;
 use dotray_geometry::Vec3;
 use dotray_geometry::shape::OrientedCone;
 use dotray_geometry::shape::OrientedCylinder;
@@ -32,6 +33,11 @@ pub(crate) struct Lists {
     pub runs: Vec<Run>,
     pub frames: Vec<Transform>,
     pub files: Vec<SceneFile>,
+    /// Finds runs while shapes are laid down.
+    pub index: RunIndex,
+    /// For each file whose triangles all stand in the world and have the same normals and texture coordinates, one of
+    /// them: with the baked corners it says all that was written.
+    pub patterns: Vec<Option<Triangle>>,
     /// Where single precision rules shapes out, for accelerators that ask for it.
     pub cull_frame: Option<Frame>,
 }
@@ -59,31 +65,56 @@ pub(crate) struct Baked {
     pub culls: Culls,
 }
 
-/// Shape `number` of the scene, in object coordinates, with its run.
-pub fn written_shape<'a>(runs: &'a [Run], files: &[SceneFile], number: u32) -> (usize, &'a Run, Shape) {
-    let index = run_of(runs, number);
-    let run = &runs[index];
+/// Shape `number` of the scene, which stands in this run, in object coordinates.
+fn written_shape(run: &Run, files: &[SceneFile], number: u32) -> Shape {
     let entry = (run.first + (number - run.first_shape)) as usize;
     // Resolving has checked that every entry of a run is a shape.
-    let shape = files[run.file.0 as usize].shape(run.kind, entry).expect("a resolved run names shapes only");
-    (index, run, shape)
+    files[run.file.0 as usize].shape(run.kind, entry).expect("a resolved run names shapes only")
 }
 
-/// The box in the world of shape `number`.
-pub fn world_bounds(runs: &[Run], frames: &[Transform], files: &[SceneFile], number: u32) -> Aabb {
-    let run = &runs[run_of(runs, number)];
+/// The box in the world of shape `number`, which stands in this run.
+pub fn world_bounds(run: &Run, frames: &[Transform], files: &[SceneFile], number: u32) -> Aabb {
     // Spheres in no group come by the million: no look at a transform for them.
     if run.kind == ShapeKind::Sphere && run.frame == 0 {
         let entry = (run.first + (number - run.first_shape)) as usize;
         return files[run.file.0 as usize].spheres.shapes[entry].bounds();
     }
-    let (_, run, shape) = written_shape(runs, files, number);
+    let shape = written_shape(run, files, number);
     shape.world_bounds(&frames[run.frame as usize].world_from_object)
 }
 
-/// The run that holds shape `number`.
-pub fn run_of(runs: &[Run], number: u32) -> usize {
-    runs.partition_point(|run| run.first_shape <= number) - 1
+/// Finds the runs of shapes: where every shape stands in a group of its own, there are as many runs as shapes.
+#[derive(Debug, Default)]
+pub struct RunIndex {
+    /// The run of every so many-th shape, and the last run.
+    marks: Vec<u32>,
+}
+
+impl RunIndex {
+    /// The shapes from mark to mark.
+    const STEP: u32 = 16;
+
+    /// Over these runs of `count` shapes.
+    pub fn new(runs: &[Run], count: u32) -> Self {
+        let mut run = 0;
+        let mut holder = |number: u32| {
+            while runs.get(run + 1).is_some_and(|next| next.first_shape <= number) {
+                run += 1;
+            }
+            run as u32
+        };
+        let mut marks: Vec<_> = (0..count).step_by(Self::STEP as usize).map(&mut holder).collect();
+        marks.push(runs.len().saturating_sub(1) as u32);
+        Self { marks }
+    }
+
+    /// Which of the runs holds shape `number`.
+    #[inline]
+    pub fn find(&self, runs: &[Run], number: u32) -> usize {
+        let mark = (number / Self::STEP) as usize;
+        let (first, last) = (self.marks[mark] as usize, self.marks[mark + 1] as usize);
+        first + runs[first..=last].partition_point(|run| run.first_shape <= number) - 1
+    }
 }
 
 /// Puts a shape into the list of its form.
@@ -154,7 +185,7 @@ impl Baked {
 
     /// Appends shape `number` at the next position.
     fn push(&mut self, lists: &Lists, number: u32, material: impl Fn(&Run, i32) -> u32) {
-        let run_index = run_of(&lists.runs, number);
+        let run_index = lists.index.find(&lists.runs, number);
         let run = &lists.runs[run_index];
         let file = &lists.files[run.file.0 as usize];
         let entry = (run.first + (number - run.first_shape)) as usize;
@@ -168,7 +199,7 @@ impl Baked {
             self.cull_ball(lists.cull_frame.as_ref(), sphere.center(), sphere.radius());
             put(&mut self.spheres, Form::Sphere, sphere)
         } else {
-            let (_, run, shape) = written_shape(&lists.runs, &lists.files, number);
+            let shape = written_shape(run, &lists.files, number);
             self.bake(lists, &shape, run.frame as usize)
         };
         self.slots.push(slot);
@@ -376,8 +407,10 @@ impl Baked {
 
 impl Lists {
     /// Lets go of the lists as written that nobody asks for any more, once every shape has been laid down: all
-    /// materials, and the spheres and boxes that stand in no group, whose baked form is the same.
+    /// materials, the spheres and boxes that stand in no group, whose baked form is the same, and such triangles if
+    /// all are dressed alike.
     pub fn let_go(&mut self) {
+        self.index = RunIndex::default();
         for (index, file) in self.files.iter_mut().enumerate() {
             let in_world = |kind: ShapeKind| {
                 let mut runs =
@@ -390,6 +423,15 @@ impl Lists {
             if in_world(ShapeKind::Cuboid) {
                 file.cuboids.shapes = Vec::new();
             }
+            let triangles = &file.triangles.shapes;
+            let pattern = triangles.first().copied().filter(|first| {
+                in_world(ShapeKind::Triangle)
+                    && triangles.par_iter().all(|other| first.is_dressed_like(other))
+            });
+            if pattern.is_some() {
+                file.triangles.shapes = Vec::new();
+            }
+            self.patterns.push(pattern);
             file.spheres.materials = Vec::new();
             file.cuboids.materials = Vec::new();
             file.cylinders.materials = Vec::new();
@@ -401,6 +443,39 @@ impl Lists {
             // The tree has become runs and transforms.
             file.items = Vec::new();
             file.groups = Vec::new();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RunIndex;
+    use dotray_scene::model::ShapeKind;
+    use dotray_scene::resolved::Run;
+    use dotray_scene::span::FileId;
+
+    #[test]
+    fn every_shape_is_found_in_its_run() {
+        let lengths = [1, 1, 40, 3, 16, 1, 1, 1, 100, 15, 17, 1];
+        let mut runs: Vec<Run> = Vec::new();
+        let mut count = 0;
+        for length in lengths.into_iter().cycle().take(50) {
+            runs.push(Run {
+                file: FileId(0),
+                kind: ShapeKind::Sphere,
+                first: 0,
+                count: length,
+                frame: 0,
+                material_base: 0,
+                first_shape: count,
+                colors: None,
+            });
+            count += length;
+        }
+        let index = RunIndex::new(&runs, count);
+        for number in 0..count {
+            let run = &runs[index.find(&runs, number)];
+            assert!((run.first_shape..run.first_shape + run.count).contains(&number), "{number}: {run:?}");
         }
     }
 }

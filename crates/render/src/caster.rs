@@ -1,5 +1,6 @@
 //! Rays against shapes, without a picture: what a program needs that casts rays of its own.
 
+use crate::bake::RunIndex;
 use crate::bake::world_bounds;
 use crate::options::PrepareOptions;
 use crate::query::Crossing;
@@ -56,6 +57,7 @@ pub struct Caster {
 /// The shapes' boxes in the world, by shape number.
 struct ShapeBoxes<'a> {
     runs: &'a [Run],
+    index: RunIndex,
     frames: &'a [Transform],
     files: &'a [SceneFile],
     count: u32,
@@ -67,7 +69,8 @@ impl Boxes for ShapeBoxes<'_> {
     }
 
     fn bounds(&self, item: u32) -> Aabb {
-        world_bounds(self.runs, self.frames, self.files, item)
+        let run = &self.runs[self.index.find(self.runs, item)];
+        world_bounds(run, self.frames, self.files, item)
     }
 }
 
@@ -109,6 +112,7 @@ impl Caster {
         let start = Instant::now();
         let boxes = ShapeBoxes {
             runs: &resolved.runs,
+            index: RunIndex::new(&resolved.runs, resolved.shape_count),
             frames: &resolved.frames,
             files: &resolved.files,
             count: resolved.shape_count,

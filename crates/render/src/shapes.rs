@@ -5,6 +5,7 @@
 
 use crate::bake::Baked;
 use crate::bake::Lists;
+use crate::bake::RunIndex;
 use crate::cull::Culls;
 use crate::estimate::written;
 use crate::form::Form;
@@ -20,6 +21,7 @@ use dotray_geometry::Triangle;
 use dotray_geometry::Vec3;
 use dotray_geometry::shape::TriangleRay;
 use dotray_scene::model::SceneFile;
+use dotray_scene::model::ShapeKind;
 use dotray_scene::resolved::Run;
 
 /// The shape at a point hit, as shading wants it: in world coordinates.
@@ -53,7 +55,8 @@ impl Shapes {
         material: impl Fn(&Run, i32) -> u32 + Sync,
     ) -> Self {
         let cull_frame = accelerator.shows_blocks().then(|| Frame::around(accelerator.bounds()));
-        let mut lists = Lists { runs, frames, files, cull_frame };
+        let index = RunIndex::new(&runs, numbers.len() as u32);
+        let mut lists = Lists { runs, frames, files, index, patterns: Vec::new(), cull_frame };
         let baked = Baked::lay(&lists, numbers, accelerator, material);
         lists.let_go();
         Self { lists, baked }
@@ -195,6 +198,12 @@ impl Shapes {
         match form {
             Form::Sphere if run.frame == 0 => Shape::Sphere(self.baked.spheres[index]),
             Form::Cuboid if run.frame == 0 => Shape::Cuboid(self.baked.cuboids[index]),
+            Form::Triangle
+                if run.kind == ShapeKind::Triangle
+                    && let Some(pattern) = &self.lists.patterns[run.file.0 as usize] =>
+            {
+                Shape::Triangle(pattern.with_vertices(self.baked.triangles[index]))
+            }
             Form::Sphere
             | Form::Cuboid
             | Form::Cylinder

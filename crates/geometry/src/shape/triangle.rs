@@ -38,6 +38,24 @@ impl Triangle {
         Ok(Self { vertices, normals, texcoords })
     }
 
+    /// A triangle with these corners, which have been checked before, and the normals and texture coordinates of this
+    /// one.
+    #[inline]
+    pub const fn with_vertices(&self, vertices: [Vec3; 3]) -> Self {
+        Self { vertices, normals: self.normals, texcoords: self.texcoords }
+    }
+
+    /// Whether normals and texture coordinates are the same, bit by bit.
+    pub fn is_dressed_like(&self, other: &Self) -> bool {
+        fn bits<const N: usize>(numbers: [f64; N]) -> [u64; N] {
+            numbers.map(f64::to_bits)
+        }
+        let corner = |triangle: &Self, i: usize| {
+            (bits(triangle.normals[i].to_array()), bits(triangle.texcoords[i].to_array()))
+        };
+        (0..3).all(|i| corner(self, i) == corner(other, i))
+    }
+
     /// The corners.
     #[inline]
     pub const fn vertices(&self) -> &[Vec3; 3] {
