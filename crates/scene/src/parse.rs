@@ -7,6 +7,7 @@
 
 mod ahead;
 mod arguments;
+mod bumps;
 mod camera;
 mod count;
 mod ending;
@@ -147,8 +148,6 @@ struct Seen {
     textures: usize,
     materials: usize,
     vertices: usize,
-    /// Whether it has been said that the colours of vertices have no effect.
-    vertex_colors: bool,
     includes: usize,
 }
 

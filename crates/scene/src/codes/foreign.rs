@@ -27,8 +27,8 @@ pub const EXPLANATIONS: &[Explanation] = &[
     explained(
         "ignored-part",
         "A foreign dialect says something that the picture does not show: joints stand at their rest pose, programs \
-         for graphics cards, bump images and the colours of single vertices have no effect, and where light passes \
-         through a surface whose index of refraction is not above 0, it is not bent.",
+         for graphics cards have no effect, nor has a bump image that no shape asks for with `-u`, and where light \
+         passes through a surface whose index of refraction is not above 0, it is not bent.",
         "#shader \"a.vert\" \"a.frag\"\n#camera 0 0 50  0 0 -1  0 1 0  45",
         "",
     ),

@@ -400,7 +400,10 @@ static UNISA: [Spec; 4] = [
                     lengths(&["px", "py", "pz"], "point"),
                     numbers(&["nx", "ny", "nz"], "normal; 0 0 0 is the face's own normal"),
                     numbers(&["ts", "tt"], "texture coordinates"),
-                    numbers(&["r", "g", "b"], "colour; it is not used"),
+                    numbers(
+                        &["r", "g", "b"],
+                        "colour, shown interpolated in place of the material's ambient and diffuse colour",
+                    ),
                 ],
                 "#vertex 0 -1 0  0 0 1  .5 0  1 1 1",
             ),

@@ -137,6 +137,10 @@ impl Parser<'_> {
         append(&mut self.scene.cones, scene.cones);
         append(&mut self.scene.triangles, scene.triangles);
         append(&mut self.scene.indexed_triangles, scene.indexed_triangles);
+        if !scene.vertex_colors.is_empty() {
+            self.scene.vertex_colors.resize(self.scene.vertices.len(), None);
+            self.scene.vertex_colors.extend(scene.vertex_colors);
+        }
         self.scene.vertices.extend(scene.vertices);
         self.shape_count += shape_count;
         self.seen.vertices += vertices;

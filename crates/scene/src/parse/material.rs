@@ -65,6 +65,7 @@ impl Parser<'_> {
             k_transmission,
             index_of_refraction: ir,
             texture,
+            bump: None,
             text: self.word(),
             weights: None,
         };
@@ -75,16 +76,26 @@ impl Parser<'_> {
     pub(super) fn vertex(&mut self) {
         self.seen.vertices += 1;
         let &[px, py, pz, nx, ny, nz, ts, tt, r, g, b, ..] = &self.values;
-        let colored = self.call.count == VERTEX_OF_UNISA && [r, g, b] != [1.0; 3];
-        if colored && !self.seen.vertex_colors {
-            self.seen.vertex_colors = true;
-            self.ignored("the colours of vertices have no effect: surfaces have those of their material");
+        if self.call.count == VERTEX_OF_UNISA {
+            self.scene.vertex_colors.resize(self.scene.vertices.len(), None);
+            self.scene.vertex_colors.push(Some(Vec3::new(r, g, b)));
         }
         self.scene.vertices.push(Vertex {
             position: Vec3::new(px, py, pz),
             normal: Vec3::new(nx, ny, nz),
             texcoord: Vec2::new(ts, tt),
         });
+    }
+
+    /// At the end of the file: colours that are all white or all black only fill their places in the text.
+    pub(super) fn finish_vertex_colors(&mut self) {
+        let scene = &mut self.scene;
+        let all = |color: Vec3| scene.vertex_colors.iter().flatten().all(|&own| own == color);
+        if all(Vec3::ONE) || all(Vec3::ZERO) {
+            scene.vertex_colors = Vec::new();
+        } else {
+            scene.vertex_colors.resize(scene.vertices.len(), None);
+        }
     }
 
     pub(super) fn ray_file(&mut self) {

@@ -31,6 +31,7 @@ impl Parser<'_> {
             k_transmission: 0.0,
             index_of_refraction: ir,
             texture,
+            bump: None,
             text: self.word(),
             weights: Some(Weights { shininess, reflection: specular, transmission }),
         };
