@@ -298,8 +298,8 @@ pub struct SceneFile {
     pub materials: Vec<Placed<Material>>,
     /// The vertices.
     pub vertices: Vec<Vertex>,
-    /// The colours of vertices by their numbers, as the dialect `unisa` has them, or empty. A triangle whose corners
-    /// all have one shows them, interpolated, in place of its material's ambient and diffuse colour.
+    /// The colours of vertices by their numbers, as the dialect `unisa` has them, where they show. A triangle whose
+    /// corners all have one shows them, interpolated, in place of its material's ambient and diffuse colour.
     pub vertex_colors: Vec<Option<Color>>,
     /// The included files, in the order of `#ray_file`.
     pub includes: Vec<Placed<Include>>,

@@ -148,6 +148,9 @@ struct Seen {
     textures: usize,
     materials: usize,
     vertices: usize,
+    /// The first vertex with a colour, and whether the file's shader shows such colours.
+    colored_vertex: Option<Span>,
+    shows_vertex_colors: bool,
     includes: usize,
 }
 

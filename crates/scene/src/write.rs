@@ -48,7 +48,9 @@ pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
     // Only the slides' own and `uva` say how many follow.
     let counted = file.dialect != Dialect::Jhu;
     let in_degrees = file.dialect == Dialect::Unisa;
-    if in_degrees && file.vertices.is_empty() {
+    if in_degrees && !file.vertex_colors.is_empty() {
+        writeln!(out, "#shader \"none\" \"VertexColour\"")?;
+    } else if in_degrees && file.vertices.is_empty() {
         // Nothing else would tell the dialect.
         writeln!(out, "#shader \"none\" \"none\"")?;
     }

@@ -60,7 +60,7 @@ fn colours_of_vertices_keep_their_vertices() {
     let options = LoadOptions::default();
     // A row of vertices without colours, then one with, in another dialect and past what is read at once.
     let colored = "1 0 1  0 0 1  .5 .5  .25 .5 .75";
-    let text = shapes(&[(100, "#shader \"a\" \"b\"\n")])
+    let text = shapes(&[(100, "#shader \"a\" \"VertexColour.frag\"\n")])
         .replace("#vertex 29", &format!("#vertex {colored}\n#vertex 29"));
     assert!(same("colours", &text, &options));
     let scene = read(3, &text, &options).scene.unwrap();

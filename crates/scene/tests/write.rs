@@ -106,6 +106,7 @@ fn bump_images_and_colours_of_vertices_are_written_as_they_were_read() {
     let once = read(&mixed);
     assert_eq!(read(&write(&once)), once);
     let of_unisa = "\
+#shader \"none\" \"VertexColour\"
 #camera 0 0 6 0 0 -1 0 1 0 30
 #vertex_num 3
 #vertex 0 0 0 0 0 1 0 0 0.5 0.25 1

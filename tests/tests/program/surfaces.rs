@@ -243,7 +243,8 @@ fn a_bump_image_that_is_not_there_is_an_error() {
     assert!(of("#sphere -m rock --  0 0 0  1").is_ok(), "nobody asks for it");
 }
 
-const CORNERS: &str = "#camera 0 0 6  0 0 -1  0 1 0  10\n#background 0 0 0\n#ambient .5 .5 .5\n\
+const CORNERS: &str = "#shader \"a.vert\" \"shaders/VertexColour.frag\"\n#camera 0 0 6  0 0 -1  0 1 0  10\n\
+                       #background 0 0 0\n#ambient .5 .5 .5\n\
                        #material .9 .1 .2  .3 .4 .5  0 0 0  0 0 0  0 0 1 -1 !!\n\
                        #vertex -1 -1 0  0 0 1  0 0  .1 .2 .3\n#vertex 1 -1 0  0 0 1  0 0  .9 0 1\n\
                        #vertex 0 1 0  0 0 1  0 0  .4 1 .6\n";
@@ -278,20 +279,17 @@ fn colours_of_vertices_are_interpolated_in_place_of_the_materials() {
 }
 
 #[test]
-fn colours_that_fill_their_places_change_nothing() {
+fn only_the_shader_for_them_shows_colours_of_vertices() {
     let folder = tempfile::tempdir().expect("a folder");
-    let of = |colors: [&str; 3]| {
-        let mut text = CORNERS.to_owned();
-        for (old, new) in [".1 .2 .3\n", ".9 0 1\n", ".4 1 .6\n"].into_iter().zip(colors) {
-            text = text.replace(old, &format!("{new}\n"));
-        }
-        picture(folder.path(), &format!("{text}#shape_triangle 0  0 1 2"))
+    let of = |shader: &str| {
+        let text = CORNERS.replace("#shader \"a.vert\" \"shaders/VertexColour.frag\"\n", shader);
+        let image = picture(folder.path(), &format!("{text}#shape_triangle 0  0 1 2"));
+        image.pixel(24, 24).map(|pixel| pixel[0])
     };
-    let own = of(["1 1 1"; 3]);
     // The material's own ambient colour times the light's.
-    assert_eq!(own.pixel(24, 24).map(|pixel| pixel[0]), Some(0.45));
-    assert_eq!(pictures::bits(&own), pictures::bits(&of(["0 0 0"; 3])));
-    assert_ne!(pictures::bits(&own), pictures::bits(&of(["1 1 1", "1 1 1", "0 0 0"])));
+    assert_eq!(of(""), Some(0.45));
+    assert_eq!(of("#shader \"VertexColour.vert\" \"Diffuse.frag\"\n"), Some(0.45));
+    assert_ne!(of("#shader \"a\" \"vertexColor\"\n"), Some(0.45));
 }
 
 #[test]

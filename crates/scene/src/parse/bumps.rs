@@ -74,8 +74,8 @@ impl Parser<'_> {
             };
         }
         for (&number, bump) in &mut bumps {
+            let span = self.scene.materials.get(number).map(|material| material.span).unwrap_or_default();
             if bump.scales == Scales::Zero {
-                let span = self.scene.materials.get(number).map(|material| material.span).unwrap_or_default();
                 self.sink.warn("ignored-part", || {
                     let shown = arguments::shown(&bump.file);
                     let message =
@@ -84,7 +84,7 @@ impl Parser<'_> {
                 });
             }
             if let Scales::Same(scale) = bump.scales {
-                let texture = self.texture_number(bump.file.clone());
+                let texture = self.texture_number(bump.file.clone(), span);
                 bump.texture = Some(texture);
                 if let Some(material) = self.scene.materials.get_mut(number) {
                     material.value.bump = Some(BumpImage { texture, scale });
@@ -102,7 +102,7 @@ impl Parser<'_> {
         let known = self.named.bumps.get(&material).map(|bump| (bump.texture, bump.file.clone()));
         let texture = match known {
             Some((Some(texture), _)) => texture,
-            Some((None, file)) => self.texture_number(file),
+            Some((None, file)) => self.texture_number(file, span),
             None => {
                 let message = "`-u` has no effect: the material names no bump image";
                 self.sink.warn("ignored-part", || Diagnostic::warning("ignored-part", message).at(span));

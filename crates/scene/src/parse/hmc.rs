@@ -295,7 +295,7 @@ impl Parser<'_> {
             &self.values;
         let ir = self.lenient_index(k_transmission > 0.0, ir, 14);
         let texture = match self.named.texture.clone() {
-            Some(Some(file)) => Some(self.texture_number(file)),
+            Some(Some(file)) => Some(self.texture_number(file, self.call_span())),
             Some(None) | None => None,
         };
         let name = self.named.name.clone().unwrap_or_default();
@@ -306,11 +306,10 @@ impl Parser<'_> {
             let shown = arguments::shown(&name);
             self.sink.warn("repeated-name", || {
                 let warning = Diagnostic::warning("repeated-name", format!("a second material {shown}"));
-                warning.at(span).label("is not used").note_at(first, "the first one counts")
+                warning.at(span).label("takes its place").note_at(first, "this one is not used")
             });
-        } else {
-            self.named.materials.insert(name, number);
         }
+        self.named.materials.insert(name, number);
         let specular = Vec3::new(sr, sg, sb);
         let shine = k_specular.clamp(0.0, 1.0);
         let weights = Weights {
@@ -344,12 +343,12 @@ impl Parser<'_> {
         }
     }
 
-    pub(super) fn texture_number(&mut self, file: Name) -> u32 {
+    pub(super) fn texture_number(&mut self, file: Name, span: Span) -> u32 {
         if let Some(number) = self.named.textures.get(&file) {
             return *number;
         }
         let number = self.scene.textures.len() as u32;
-        let (value, span) = (String::from_utf8_lossy(&file).into_owned(), self.call_span());
+        let value = String::from_utf8_lossy(&file).into_owned();
         self.scene.textures.push(Placed { value, span });
         self.named.textures.insert(file, number);
         number
@@ -429,7 +428,7 @@ impl Parser<'_> {
         let texture = match shown {
             Shown::Nothing => None,
             Shown::Own => material.value.texture,
-            Shown::File(file) => Some(self.texture_number(file)),
+            Shown::File(file) => Some(self.texture_number(file, span)),
         };
         let bump = self.bump_of_use(number, f64::from_bits(bump_scale), span);
         if (texture, bump) == (material.value.texture, material.value.bump) {

@@ -79,6 +79,9 @@ impl Parser<'_> {
         if self.call.count == VERTEX_OF_UNISA {
             self.scene.vertex_colors.resize(self.scene.vertices.len(), None);
             self.scene.vertex_colors.push(Some(Vec3::new(r, g, b)));
+            if self.seen.colored_vertex.is_none() && [r, g, b] != [1.0; 3] && [r, g, b] != [0.0; 3] {
+                self.seen.colored_vertex = Some(self.call_span());
+            }
         }
         self.scene.vertices.push(Vertex {
             position: Vec3::new(px, py, pz),
@@ -87,14 +90,20 @@ impl Parser<'_> {
         });
     }
 
-    /// At the end of the file: colours that are all white or all black only fill their places in the text.
+    /// At the end of the file: colours that its shader does not show go.
     pub(super) fn finish_vertex_colors(&mut self) {
         let scene = &mut self.scene;
-        let all = |color: Vec3| scene.vertex_colors.iter().flatten().all(|&own| own == color);
-        if all(Vec3::ONE) || all(Vec3::ZERO) {
-            scene.vertex_colors = Vec::new();
-        } else {
+        if self.seen.shows_vertex_colors && !scene.vertex_colors.is_empty() {
             scene.vertex_colors.resize(scene.vertices.len(), None);
+            return;
+        }
+        scene.vertex_colors = Vec::new();
+        if let Some(span) = self.seen.colored_vertex {
+            self.sink.warn("ignored-part", || {
+                let message = "the colours of vertices have no effect: surfaces have those of their material";
+                let help = "where the second name of `#shader` is `VertexColour`, they show";
+                Diagnostic::warning("ignored-part", message).at(span).help(help)
+            });
         }
     }
 
