@@ -93,7 +93,8 @@ fn the_grammar_names_the_directives_of_the_table() {
 fn sorted_words() -> Value {
     let all: BTreeSet<&str> = Dialect::ALL.into_iter().flat_map(words_of).map(|spec| spec.word).collect();
     let begins = |word: &str| word.ends_with("_begin");
-    let ends = |word: &str| word.strip_suffix("_end").is_some_and(|stem| all.contains(&*format!("{stem}_begin")));
+    let ends =
+        |word: &str| word.strip_suffix("_end").is_some_and(|stem| all.contains(&*format!("{stem}_begin")));
     let sort = |spec: &Spec| match spec.word {
         word if begins(word) => "begins",
         word if ends(word) => "ends",
