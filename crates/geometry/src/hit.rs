@@ -25,6 +25,29 @@ pub struct Surface {
     pub texcoord: Texcoord,
 }
 
+impl Surface {
+    /// The unit vectors in the surface along which s and t grow fastest; `None` at a pole, which has none.
+    ///
+    /// Of triangles only [`Triangle::texture_axes`](crate::Triangle::texture_axes) knows them: everywhere else t grows
+    /// to the right of s, seen from outside.
+    pub fn texture_axes(&self) -> Option<[Vec3; 2]> {
+        let normal = self.geometric_normal;
+        let along_s = match self.texcoord {
+            Texcoord::Around { radial, .. } => around(radial.x, radial.y)?,
+            Texcoord::OnSphere(normal) => around(normal.x, normal.z)?,
+            // A plane: the sides of a box turn about y; on what faces up or down, s runs along x.
+            Texcoord::Known(_) if normal.y != 0.0 => Vec3::X,
+            Texcoord::Known(_) => around(normal.x, normal.z)?,
+        };
+        Some([along_s, along_s.cross(normal)])
+    }
+}
+
+/// Along a turn about the y axis, at (x, z).
+fn around(x: f64, z: f64) -> Option<Vec3> {
+    Vec3::new(z, 0.0, -x).try_normalize()
+}
+
 /// Texture coordinates, not worked out before somebody asks: few surfaces have a picture on them, and arc functions
 /// cost more than the rest of a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,7 +21,7 @@ pub use triangle::{Triangle, TriangleRay, face_normal, interpolated_normal, inte
 use crate::aabb::Aabb;
 use crate::hit::{Crossings, Hit, Surface};
 use crate::ray::Ray;
-use crate::vector::Affine;
+use crate::vector::{Affine, Vec3};
 
 /// Why numbers do not make a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -101,6 +101,20 @@ impl Shape {
     /// What shading wants to know of a hit that this very ray made.
     pub fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
         each_shape!(self, shape => shape.surface(ray, hit))
+    }
+
+    /// The unit vectors in the surface along which s and t grow fastest, at a surface point of this shape; `None` where
+    /// there are none.
+    pub fn texture_axes(&self, surface: &Surface) -> Option<[Vec3; 2]> {
+        match self {
+            Self::Triangle(triangle) => triangle.texture_axes(),
+            Self::Sphere(_)
+            | Self::Cuboid(_)
+            | Self::Cylinder(_)
+            | Self::Cone(_)
+            | Self::Torus(_)
+            | Self::Open(_) => surface.texture_axes(),
+        }
     }
 
     /// The smallest box around the shape, padded by what rounding may move points of its surface.

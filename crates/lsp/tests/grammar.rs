@@ -89,6 +89,45 @@ fn the_grammar_names_the_directives_of_the_table() {
     assert!(written == made, "the grammar is not what the table says; UPDATE=1 rewrites it");
 }
 
+/// The words by what tree-sitter's grammar makes of them.
+fn sorted_words() -> Value {
+    let all: BTreeSet<&str> = Dialect::ALL.into_iter().flat_map(words_of).map(|spec| spec.word).collect();
+    let begins = |word: &str| word.ends_with("_begin");
+    let ends =
+        |word: &str| word.strip_suffix("_end").is_some_and(|stem| all.contains(&*format!("{stem}_begin")));
+    let sort = |spec: &Spec| match spec.word {
+        word if begins(word) => "begins",
+        word if ends(word) => "ends",
+        _other if names_file(spec) => "files",
+        _other if is_shape(spec) => "shapes",
+        _other => "settings",
+    };
+    let of = |wanted: &str| {
+        let specs = Dialect::ALL.into_iter().flat_map(words_of).filter(|spec| sort(spec) == wanted);
+        let words: BTreeSet<&str> = specs.map(|spec| spec.word.trim_start_matches('#')).collect();
+        json!(words)
+    };
+    let sorts = ["begins", "ends", "files", "shapes", "settings"];
+    Value::Object(sorts.into_iter().map(|sort| (sort.to_owned(), of(sort))).collect())
+}
+
+#[test]
+fn the_grammar_for_tree_sitter_names_the_directives_of_the_table() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../editors/tree-sitter/directives.json");
+    let made = sorted_words();
+    if std::env::var_os("UPDATE").is_some() {
+        std::fs::write(&path, format!("{made:#}\n")).unwrap();
+    }
+    let written = std::fs::read_to_string(&path).unwrap_or_default();
+    let written: Value = serde_json::from_str(&written).unwrap_or_default();
+    assert!(written == made, "directives.json is not what the table says; UPDATE=1 rewrites it");
+    // No word is in two lists, and together they are all words.
+    let lists = written.as_object().into_iter().flatten().filter_map(|(_, list)| list.as_array());
+    let listed: Vec<&str> = lists.flatten().filter_map(Value::as_str).collect();
+    assert_eq!(listed.len(), listed.iter().collect::<BTreeSet<_>>().len());
+    assert_eq!(listed.len(), alternatives(|_| true).split('|').count());
+}
+
 #[test]
 fn every_directive_is_of_one_sort() {
     for spec in Dialect::ALL.into_iter().flat_map(words_of) {

@@ -176,6 +176,7 @@ impl Builder {
             k_transmission: numbers.k_transmission,
             index_of_refraction: numbers.index_of_refraction,
             texture,
+            bump: None,
             text: numbers.text,
             weights: None,
         }));

@@ -57,6 +57,7 @@ pub(crate) fn written(files: &[SceneFile]) -> u64 {
             + bytes(&file.tori.shapes)
             + bytes(&file.open_sides.shapes)
             + bytes(&file.vertices)
+            + bytes(&file.vertex_colors)
             + file.colors.iter().map(|list| bytes(&list.colors)).sum::<u64>()
     };
     files.iter().map(of_file).sum()

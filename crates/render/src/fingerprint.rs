@@ -7,7 +7,10 @@ use crate::options::Shadows;
 use crate::options::TextureFilter;
 use crate::world::Textures;
 use dotray_scene::Resolved;
+use dotray_scene::model::SceneFile;
 use dotray_scene::model::ShapeKind;
+use dotray_scene::resolved::Run;
+use dotray_scene::resolved::RunColors;
 use std::fmt;
 use std::fmt::Debug;
 use std::fmt::Write;
@@ -181,15 +184,28 @@ fn shapes(resolved: &Resolved) -> String {
             if let Some(shape) = file.shape(run.kind, entry as usize) {
                 numbers::of_shape(&shape, &mut |number| hash.number(number));
             }
-            let color = run.colors.and_then(|(list, first)| {
-                file.colors.get(list as usize)?.colors.get((first + entry - run.first) as usize)
-            });
-            color.into_iter().flatten().for_each(|&part| hash.number(part.into()));
+            own_colors(run, file, entry, &mut |part| hash.number(part));
         }
     }
     // Open sides of both kinds have one list: their numbers tell them apart.
     debug_assert_eq!(ShapeKind::ALL.len(), 8);
     hash.text()
+}
+
+/// Passes on what colours entry `entry` of a run has of its own.
+fn own_colors(run: &Run, file: &SceneFile, entry: u32, take: &mut impl FnMut(f64)) {
+    match run.colors {
+        RunColors::No => {}
+        RunColors::Shapes { list, first } => {
+            let colors = file.colors.get(list as usize).map_or(&[][..], |list| &list.colors);
+            let color = colors.get((first + entry - run.first) as usize);
+            color.into_iter().flatten().for_each(|&part| take(part.into()));
+        }
+        RunColors::Vertices => {
+            let colors = file.corner_colors(entry as usize);
+            colors.into_iter().flatten().for_each(|color| color.to_array().into_iter().for_each(&mut *take));
+        }
+    }
 }
 
 #[cfg(test)]

@@ -59,6 +59,8 @@ pub struct Meeting {
     pub geometric_normal: Vec3,
     /// Whether the ray comes from outside.
     pub entering: bool,
+    /// M_A, with the shape's own colour where it has one
+    pub ambient: Vec3,
     /// T_C
     pub texture: Vec3,
     /// r̂
@@ -216,6 +218,7 @@ impl Inspector {
                 normal: point.normal,
                 geometric_normal: point.geometric_normal,
                 entering: point.entering,
+                ambient: point.ambient,
                 texture: point.texture,
                 mirrored: point.mirrored,
                 own_light: Vec3::ZERO,

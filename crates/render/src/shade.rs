@@ -11,9 +11,11 @@ use crate::light::Incident;
 use crate::light::MOST;
 use crate::options::TextureFilter;
 use crate::query::Nearest;
+use crate::shapes::OwnColor;
 use crate::solid;
 use crate::world::World;
 use dotray_geometry::Ray;
+use dotray_geometry::Surface;
 use dotray_geometry::Vec3;
 use dotray_scene::model::Tint;
 use dotray_scene::resolved::ResolvedMaterial;
@@ -57,13 +59,30 @@ fn log2_above(x: f64) -> f64 {
     exponent + 0.585 + (rest - 1.5) * 0.9618
 }
 
+/// The slope of a texture taken as a height, in object space: the surface rises by it a texel.
+fn slope_of_image(
+    world: &World,
+    position: u32,
+    surface: &Surface,
+    texture: u32,
+    filter: TextureFilter,
+) -> Vec3 {
+    let Some(image) = world.textures.get(texture as usize) else { return Vec3::ZERO };
+    let Some([along_s, along_t]) = world.caster.shapes.texture_axes(position, surface) else {
+        return Vec3::ZERO;
+    };
+    let slopes = image.slopes(surface.texcoord.get(), filter);
+    along_s * slopes.x + along_t * slopes.y
+}
+
 impl<'a> ShadePoint<'a> {
     /// The point where `ray` met `nearest`.
     pub(crate) fn new(world: &'a World, ray: &Ray, nearest: &Nearest, filter: TextureFilter) -> Self {
         let material = &world.materials[world.caster.shapes.material(nearest.position) as usize];
-        let (ambient, diffuse) = match world.caster.shapes.color(nearest.position) {
-            None => (material.ambient, material.diffuse),
-            Some(color) => (material.ambient * color, material.diffuse * color),
+        let (ambient, diffuse) = match world.caster.shapes.own_color(nearest.position, ray) {
+            OwnColor::No => (material.ambient, material.diffuse),
+            OwnColor::Times(color) => (material.ambient * color, material.diffuse * color),
+            OwnColor::Instead(color) => (color, color),
         };
         let surface = world.caster.shapes.surface(nearest.position, ray, nearest.hit);
         let procedural = &material.procedural;
@@ -73,7 +92,9 @@ impl<'a> ShadePoint<'a> {
             surface.geometric_normal
         } else {
             let normal = surface.in_object.shading_normal.normalize();
-            let leaned = solid::bumped(&procedural.bumps, normal, surface.in_object.point);
+            let of_image =
+                |number| slope_of_image(world, nearest.position, &surface.in_object, number, filter);
+            let leaned = solid::bumped(&procedural.bumps, normal, surface.in_object.point, of_image);
             world.caster.shapes.world_normal(nearest.position, leaned)
         };
         let image = material.texture.and_then(|number| world.textures.get(number as usize));

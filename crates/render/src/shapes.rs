@@ -23,6 +23,7 @@ use dotray_geometry::shape::TriangleRay;
 use dotray_scene::model::SceneFile;
 use dotray_scene::model::ShapeKind;
 use dotray_scene::resolved::Run;
+use dotray_scene::resolved::RunColors;
 
 /// The shape at a point hit, as shading wants it: in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +34,17 @@ pub struct WorldSurface {
     pub geometric_normal: Vec3,
     /// The same point in the shape's coordinates, before its groups; its shading normal there, of length 1.
     pub in_object: Surface,
+}
+
+/// What a shape's own colour does to its material's ambient and diffuse colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OwnColor {
+    /// There is none.
+    No,
+    /// It multiplies them.
+    Times(Vec3),
+    /// It stands in their place.
+    Instead(Vec3),
 }
 
 /// All shapes of a scene.
@@ -99,14 +111,36 @@ impl Shapes {
         self.baked.materials[position as usize]
     }
 
-    /// The colour of the shape itself, beside its material's; `None` in scenes without such colours.
+    /// The colour of the shape itself, where `ray` meets it.
     #[inline]
-    pub fn color(&self, position: u32) -> Option<Vec3> {
+    pub fn own_color(&self, position: u32, ray: &Ray) -> OwnColor {
         let run = self.run(position);
-        let (list, first) = run.colors?;
-        let index = first + (self.number(position) - run.first_shape);
-        let colors = &self.lists.files[run.file.0 as usize].colors[list as usize].colors;
-        Some(Vec3::from_array(colors[index as usize].map(f64::from)))
+        match run.colors {
+            RunColors::No => OwnColor::No,
+            RunColors::Shapes { list, first } => {
+                let index = first + (self.number(position) - run.first_shape);
+                let colors = &self.lists.files[run.file.0 as usize].colors[list as usize].colors;
+                OwnColor::Times(Vec3::from_array(colors[index as usize].map(f64::from)))
+            }
+            RunColors::Vertices => self.interpolated_color(position, ray),
+        }
+    }
+
+    #[cold]
+    fn interpolated_color(&self, position: u32, ray: &Ray) -> OwnColor {
+        let run = self.run(position);
+        let entry = run.first + (self.number(position) - run.first_shape);
+        let Some(colors) = self.lists.files[run.file.0 as usize].corner_colors(entry as usize) else {
+            return OwnColor::No;
+        };
+        let corners = &self.baked.triangles[self.baked.slot(position).1];
+        let weights = TriangleRay::new(ray).barycentric(corners);
+        OwnColor::Instead(colors[0] * weights[0] + colors[1] * weights[1] + colors[2] * weights[2])
+    }
+
+    /// The unit vectors of object space along which the shape's texture coordinates grow fastest.
+    pub fn texture_axes(&self, position: u32, surface: &Surface) -> Option<[Vec3; 2]> {
+        self.in_object(position, self.run(position)).texture_axes(surface)
     }
 
     /// The run that the shape stands in.

@@ -39,13 +39,19 @@ pub fn color(solids: &[Solid], point_in_object: Vec3) -> Vec3 {
     })
 }
 
-/// The unit shading normal `normal` of object space, leaned by the bumps' slopes.
-pub fn bumped(bumps: &[Bump], normal: Vec3, point_in_object: Vec3) -> Vec3 {
+/// The unit shading normal `normal` of object space, leaned by the bumps' slopes; `of_image` gives the slope of a
+/// texture as a height, along the surface.
+pub fn bumped(bumps: &[Bump], normal: Vec3, point_in_object: Vec3, of_image: impl Fn(u32) -> Vec3) -> Vec3 {
     if bumps.is_empty() {
         return normal;
     }
     let slopes = bumps.iter().fold(Vec3::ZERO, |sum, bump| {
-        sum + fbm_gradient(point_in_object * bump.scale, bump.octaves) * (bump.height * bump.scale)
+        sum + match *bump {
+            Bump::Noise { scale, octaves, height } => {
+                fbm_gradient(point_in_object * scale, octaves) * (height * scale)
+            }
+            Bump::Image { texture, scale } => of_image(texture) * scale,
+        }
     });
     let leaned = normal - (slopes - normal * slopes.dot(normal));
     // Slopes past 1e150 would overflow the length; such a normal lies in the surface.
@@ -86,10 +92,10 @@ mod tests {
 
     #[test]
     fn a_bump_leans_against_the_slope() {
-        let bump = Bump { scale: 1.0, octaves: 1, height: 0.3 };
+        let bump = Bump::Noise { scale: 1.0, octaves: 1, height: 0.3 };
         let p = Vec3::new(0.4, 0.3, 0.7);
         let slope = fbm_gradient(p, 1) * 0.3;
-        let n = bumped(&[bump], Vec3::Y, p);
+        let n = bumped(&[bump], Vec3::Y, p, |_| Vec3::ZERO);
         assert!((n.length() - 1.0).abs() < 1e-15);
         assert!((n - Vec3::new(-slope.x, 1.0, -slope.z).normalize()).length() < 1e-15);
     }

@@ -58,6 +58,14 @@ impl Texture {
             }
         }
     }
+
+    /// How much brighter the texture gets over one texel to the right and over one texel down, about (s, t).
+    pub fn slopes(&self, st: Vec2, filter: TextureFilter) -> Vec2 {
+        let brightness = |step: Vec2| self.color(st + step, filter).element_sum() / 3.0;
+        let half = Vec2::new(0.5 / self.image.width() as f64, 0.5 / self.image.height() as f64);
+        let (right, down) = (half.with_y(0.0), half.with_x(0.0));
+        Vec2::new(brightness(right) - brightness(-right), brightness(down) - brightness(-down))
+    }
 }
 
 #[cfg(test)]
@@ -87,11 +95,28 @@ mod tests {
     }
 
     #[test]
+    fn slopes_are_differences_of_neighbours() {
+        // Brightnesses 0 and 0.6 above 0.3 and 1.
+        let samples = vec![0., 0., 0., 0.9, 0.6, 0.3, 0.3, 0.3, 0.3, 1., 1., 1.];
+        let t = Texture::new(Image::from_samples(2, 2, Channels::Rgb, samples).expect("valid size"));
+        let slopes = |s: f64, y: f64| t.slopes(Vec2::new(s, y), TextureFilter::Bilinear);
+        let near = |a: Vec2, x: f64, y: f64| (a - Vec2::new(x, y)).length() < 1e-6;
+        // Between the two texels of the upper row, and between those of the left column.
+        assert!(near(slopes(0.5, 0.25), 0.6, 0.0), "{}", slopes(0.5, 0.25));
+        assert!(near(slopes(0.25, 0.5), 0.0, 0.3), "{}", slopes(0.25, 0.5));
+        // In the middle of all four.
+        assert!(near(slopes(0.5, 0.5), 0.65, 0.35), "{}", slopes(0.5, 0.5));
+        // Where the picture wraps around, it falls again.
+        assert!(near(slopes(1.0, 0.25), -0.6, 0.0), "{}", slopes(1.0, 0.25));
+    }
+
+    #[test]
     fn extremes_do_not_panic() {
         let t = texture();
         for x in [1e300, -1e300, -1e-300, 0.999_999_999_999_999_9, f64::INFINITY, -0.0] {
             for filter in [TextureFilter::Bilinear, TextureFilter::Nearest] {
                 assert!(t.color(Vec2::new(x, x), filter).is_finite());
+                assert!(t.slopes(Vec2::new(x, x), filter).is_finite());
             }
         }
     }

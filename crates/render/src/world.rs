@@ -162,7 +162,9 @@ impl World {
     /// own; the shapes stay, so this costs as much as there are lights and materials. Materials must be as many and
     /// name the same textures as before; otherwise nothing changes.
     pub fn restyle(&mut self, style: &Resolved) {
-        let same_texture = |(a, b): (&ResolvedMaterial, &ResolvedMaterial)| a.texture == b.texture;
+        let same_texture = |(a, b): (&ResolvedMaterial, &ResolvedMaterial)| {
+            a.texture == b.texture && a.procedural.bump_textures().eq(b.procedural.bump_textures())
+        };
         let fits = self.materials.len() == style.materials.len();
         if !fits || !self.materials.iter().zip(&style.materials).all(same_texture) {
             return;

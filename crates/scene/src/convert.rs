@@ -1,6 +1,8 @@
 //! A scene of one dialect in the words of another, with all that they cannot say.
 
+mod bumps;
 mod carry;
+mod colors;
 mod hmc;
 mod inline;
 

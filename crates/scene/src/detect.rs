@@ -35,6 +35,10 @@ pub struct Marks {
     short_materials: Evidence,
     /// Materials of 19 arguments: `uva` or `jhu`.
     long_materials: Evidence,
+    /// Programs for graphics cards: `unisa` or `jhu`.
+    shaders: Evidence,
+    /// Key frames: `uva` or `jhu`.
+    key_files: Evidence,
     /// Whether a file's name ends in `.scene`.
     named_scene: bool,
 }
@@ -75,7 +79,8 @@ impl Marks {
     /// Whether anything speaks for any dialect.
     pub fn is_empty(&self) -> bool {
         let Self { slides, uva, jhu, hmc, unisa, short_materials, long_materials, .. } = self;
-        [slides, uva, jhu, hmc, unisa, short_materials, long_materials].iter().all(|mark| mark.count == 0)
+        let certain = [slides, uva, jhu, hmc, unisa, short_materials, long_materials];
+        certain.into_iter().chain([&self.shaders, &self.key_files]).all(|mark| mark.count == 0)
     }
 
     /// Gathers what one file has; answers with the names of the files that it includes.
@@ -133,8 +138,14 @@ impl Marks {
     }
 
     fn by_word(&mut self, word: &[u8], span: Span) {
+        if word.eq_ignore_ascii_case(b"#shader") {
+            return self.shaders.add(span, "a shader");
+        }
+        if word.eq_ignore_ascii_case(b"#key_file") {
+            return self.key_files.add(span, "key frames");
+        }
         match lookalike::foreign_directive(word).and_then(Dialect::of_name) {
-            Some(Dialect::Uva) => self.uva.add(span, "a joint or key frames"),
+            Some(Dialect::Uva) => self.uva.add(span, "a joint"),
             Some(Dialect::Jhu) => self.jhu.add(span, "a directive of that dialect"),
             Some(Dialect::Hmc) => self.hmc.add(span, "a directive of that dialect"),
             Some(Dialect::Unisa) => self.unisa.add(span, "a directive of that dialect"),
@@ -145,16 +156,21 @@ impl Marks {
     /// Weighs the marks.
     pub fn verdict(&self) -> Verdict {
         let found = |evidence: &Evidence| evidence.count > 0;
-        let of_unisa = found(&self.unisa) || (self.named_scene && !found(&self.slides));
         let of_jhu = found(&self.jhu);
+        let has_shaders = found(&self.shaders) && !of_jhu;
+        let of_unisa = found(&self.unisa) || has_shaders || (self.named_scene && !found(&self.slides));
+        let shared = |mark: Evidence, here: bool| if here { mark } else { Evidence::default() };
         let short = |here: bool| if here { self.short_materials } else { Evidence::default() };
         let long = |here: bool| if here { self.long_materials } else { Evidence::default() };
         let mut weighed = [
             (Dialect::Slides, self.slides.with(short(!of_unisa))),
-            (Dialect::Uva, self.uva.with(long(!of_jhu))),
-            (Dialect::Jhu, self.jhu.with(long(of_jhu))),
+            (Dialect::Uva, self.uva.with(long(!of_jhu)).with(shared(self.key_files, !of_jhu))),
+            (
+                Dialect::Jhu,
+                self.jhu.with(long(of_jhu)).with(shared(self.key_files.with(self.shaders), of_jhu)),
+            ),
             (Dialect::Hmc, self.hmc),
-            (Dialect::Unisa, self.unisa.with(short(of_unisa))),
+            (Dialect::Unisa, self.unisa.with(short(of_unisa)).with(shared(self.shaders, has_shaders))),
         ];
         // The sort keeps the order of equal ones, so that the slides stand before all others.
         weighed.sort_by_key(|(_, evidence)| std::cmp::Reverse(evidence.count));
@@ -218,6 +234,8 @@ mod tests {
             ("a.ray", "#version HMCCS155FALL2002 #sphere -m a -- 0 0 0 1", Dialect::Hmc),
             ("a.ray", "#light_dir -n Sun -- 1 1 1 0 0 -1", Dialect::Hmc),
             ("a.ray", "#shader \"a\" \"b\"", Dialect::Unisa),
+            ("a.ray", &format!("#shader a b #key_file c {long} #static_affine"), Dialect::Jhu),
+            ("a.ray", &format!("#key_file c {long}"), Dialect::Uva),
             ("a.ray", &format!("{short} #vertex 1 1 1 1 1 1 1 1 1 1 1"), Dialect::Unisa),
             ("a.scene", &format!("#camera 0 0 0 0 0 -1 0 1 0 45 {short}"), Dialect::Unisa),
         ];

@@ -227,7 +227,7 @@ pub const READER_CODES: &[(&str, Severity, &str)] = &[
         Severity::Warning,
         "A second `#camera`, `#background` or `#ambient`; the first one counts.",
     ),
-    ("repeated-name", Severity::Warning, "A second material of the same name; the first one counts."),
+    ("repeated-name", Severity::Warning, "A second material of the same name; the last one counts."),
     ("spot-angle", Severity::Warning, "A spot's cut-off angle does not lie between 0 and π."),
     ("stray-group-end", Severity::Error, "`#group_end` without an open group."),
     ("stray-text", Severity::Error, "Text before the first directive."),

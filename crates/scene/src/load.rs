@@ -452,6 +452,7 @@ fn is_complete(file: &SceneFile) -> bool {
 /// Lists grow by doubling; what is not used goes back.
 fn shrink(file: &mut SceneFile) {
     file.vertices.shrink_to_fit();
+    file.vertex_colors.shrink_to_fit();
     file.items.shrink_to_fit();
 }
 

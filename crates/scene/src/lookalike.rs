@@ -105,6 +105,7 @@ pub fn foreign_directive(word: &[u8]) -> Option<&'static str> {
         ("#joint_end", "uva"),
         ("#key_file", "uva"),
         ("#static_affine", "jhu"),
+        ("#dynamic_affine", "jhu"),
         ("#shape_list_begin", "jhu"),
         ("#shape_list_end", "jhu"),
         ("#shape_triangles", "jhu"),

@@ -120,6 +120,15 @@ pub struct Weights {
     pub transmission: Color,
 }
 
+/// An image that leans a surface's normals, as the dialect `hmc` has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BumpImage {
+    /// The number of a texture in the same file.
+    pub texture: u32,
+    /// The slope of a texel that is 1 brighter than its neighbour.
+    pub scale: f64,
+}
+
 /// `#material`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -139,6 +148,8 @@ pub struct Material {
     pub index_of_refraction: f64,
     /// tn: the number of a texture in the same file.
     pub texture: Option<u32>,
+    /// An image whose brightness is the surface's height.
+    pub bump: Option<BumpImage>,
     /// The text between the exclamation marks.
     pub text: String,
     /// Weights in place of ks and kt.
@@ -157,6 +168,7 @@ impl Default for Material {
             k_transmission: 0.0,
             index_of_refraction: 1.0,
             texture: None,
+            bump: None,
             text: String::new(),
             weights: None,
         }
@@ -286,6 +298,9 @@ pub struct SceneFile {
     pub materials: Vec<Placed<Material>>,
     /// The vertices.
     pub vertices: Vec<Vertex>,
+    /// The colours of vertices by their numbers, as the dialect `unisa` has them, where they show. A triangle whose
+    /// corners all have one shows them, interpolated, in place of its material's ambient and diffuse colour.
+    pub vertex_colors: Vec<Option<Color>>,
     /// The included files, in the order of `#ray_file`.
     pub includes: Vec<Placed<Include>>,
     /// The group matrices, in the order of `#group_begin`.

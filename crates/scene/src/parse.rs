@@ -7,6 +7,7 @@
 
 mod ahead;
 mod arguments;
+mod bumps;
 mod camera;
 mod count;
 mod ending;
@@ -147,8 +148,9 @@ struct Seen {
     textures: usize,
     materials: usize,
     vertices: usize,
-    /// Whether it has been said that the colours of vertices have no effect.
-    vertex_colors: bool,
+    /// The first vertex with a colour, and whether the file's shader shows such colours.
+    colored_vertex: Option<Span>,
+    shows_vertex_colors: bool,
     includes: usize,
 }
 

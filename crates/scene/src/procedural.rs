@@ -33,24 +33,44 @@ pub enum Pattern {
     Checker,
 }
 
-/// A bump: the normal leans by the slopes of h(p) = height · fbm(scale · p).
+/// A bump: what leans the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bump {
-    /// Cells a unit.
-    pub scale: f64,
-    /// 1 … 30.
-    pub octaves: u32,
-    /// The function's size.
-    pub height: f64,
+pub enum Bump {
+    /// The slopes of h(p) = height · fbm(scale · p).
+    Noise {
+        /// Cells a unit.
+        scale: f64,
+        /// 1 … 30.
+        octaves: u32,
+        /// The function's size.
+        height: f64,
+    },
+    /// The differences of an image's texels; no clause, but what a dialect's materials may have.
+    Image {
+        /// The number of a texture of the scene.
+        texture: u32,
+        /// The slope of a texel that is 1 brighter than its neighbour.
+        scale: f64,
+    },
 }
 
-/// All clauses of one string, in its order.
+/// All clauses of one string, in its order, and then the bump image if there is one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Procedural {
     /// Their colours multiply.
     pub solids: Vec<Solid>,
     /// Their gradients add.
     pub bumps: Vec<Bump>,
+}
+
+impl Procedural {
+    /// The numbers of the textures that lean normals.
+    pub fn bump_textures(&self) -> impl Iterator<Item = u32> {
+        self.bumps.iter().filter_map(|bump| match *bump {
+            Bump::Image { texture, .. } => Some(texture),
+            Bump::Noise { .. } => None,
+        })
+    }
 }
 
 /// Reads the text between the exclamation marks. The second value holds a warning for each bad key or value; such
@@ -97,17 +117,17 @@ fn solid<'a>(
 }
 
 fn bump<'a>(clause: &str, words: impl Iterator<Item = &'a str>, warnings: &mut Vec<String>) -> Bump {
-    let mut bump = Bump { scale: 1.0, octaves: 4, height: 0.1 };
+    let (mut scale, mut count, mut height) = (1.0, 4, 0.1);
     for (key, value) in words.filter_map(|word| word.split_once('=')) {
         let fault = match key {
-            "scale" => store(&mut bump.scale, number(value), NUMBER),
-            "octaves" => store(&mut bump.octaves, octaves(value), OCTAVES),
-            "height" => store(&mut bump.height, number(value), NUMBER),
+            "scale" => store(&mut scale, number(value), NUMBER),
+            "octaves" => store(&mut count, octaves(value), OCTAVES),
+            "height" => store(&mut height, number(value), NUMBER),
             _ => Some("a known key: `scale`, `octaves` or `height`"),
         };
         warn(warnings, clause, key, value, fault);
     }
-    bump
+    Bump::Noise { scale, octaves: count, height }
 }
 
 const NUMBER: &str = "a number";
@@ -186,7 +206,7 @@ mod tests {
         let all = clean("noise;marble ; wood;\n\tchecker;bump");
         let patterns = [Pattern::Noise, Pattern::Marble, Pattern::Wood, Pattern::Checker];
         assert_eq!(all.solids, patterns.map(default_solid));
-        assert_eq!(all.bumps, [Bump { scale: 1.0, octaves: 4, height: 0.1 }]);
+        assert_eq!(all.bumps, [Bump::Noise { scale: 1.0, octaves: 4, height: 0.1 }]);
     }
 
     #[test]
@@ -202,7 +222,7 @@ mod tests {
             color2: Vec3::new(1.0, 0.0, 0.001),
         };
         assert_eq!(all.solids, [expected]);
-        assert_eq!(all.bumps, [Bump { scale: 0.0, octaves: 1, height: -2.0 }]);
+        assert_eq!(all.bumps, [Bump::Noise { scale: 0.0, octaves: 1, height: -2.0 }]);
     }
 
     #[test]
@@ -270,7 +290,7 @@ mod tests {
             assert!(warnings[0].contains(&format!("`{word}`")), "{word}: {warnings:?}");
         }
         let (procedural, warnings) = parse_clauses("bump color=1,1,1 height=2");
-        assert_eq!(procedural.bumps[0].height, 2.0);
+        assert!(matches!(procedural.bumps[0], Bump::Noise { height: 2.0, .. }));
         assert_eq!(warnings.len(), 1);
     }
 

@@ -69,8 +69,24 @@ pub struct Run {
     pub material_base: u32,
     /// The scene-wide number of the first shape: file order, instances expanded. Ties go to the lower number.
     pub first_shape: u32,
-    /// The number of the list in [`SceneFile::colors`] that colours the shapes, and the place there of the first one.
-    pub colors: Option<(u32, u32)>,
+    /// Where the shapes have colours of their own.
+    pub colors: RunColors,
+}
+
+/// Colours that shapes have beside their materials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunColors {
+    /// None.
+    No,
+    /// One a shape, which multiplies the material's.
+    Shapes {
+        /// The number of the list in [`SceneFile::colors`].
+        list: u32,
+        /// The place there of the run's first shape.
+        first: u32,
+    },
+    /// One a vertex, interpolated, in place of the material's: [`SceneFile::vertex_colors`].
+    Vertices,
 }
 
 /// A step of the scene's tree with instances expanded, in file order.

@@ -1,5 +1,6 @@
 //! The shapes of a file by their kind.
 
+use crate::model::Color;
 use crate::model::SceneFile;
 use crate::model::ShapeKind;
 use crate::span::FileId;
@@ -85,6 +86,13 @@ impl SceneFile {
         let vertices = [a?, b?, c?];
         let [positions, normals] = [vertices.map(|v| v.position), vertices.map(|v| v.normal)];
         Triangle::new(positions, normals, vertices.map(|v| v.texcoord)).ok()
+    }
+
+    /// The colours of a shared triangle's corners, where all have one.
+    pub fn corner_colors(&self, index: usize) -> Option<[Color; 3]> {
+        let corners = self.indexed_triangles.shapes.get(index)?;
+        let [a, b, c] = corners.map(|corner| self.vertex_colors.get(corner as usize).copied().flatten());
+        Some([a?, b?, c?])
     }
 
     /// One shape of a kind; `None` beyond the end of the list.

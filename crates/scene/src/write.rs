@@ -48,7 +48,9 @@ pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
     // Only the slides' own and `uva` say how many follow.
     let counted = file.dialect != Dialect::Jhu;
     let in_degrees = file.dialect == Dialect::Unisa;
-    if in_degrees && file.vertices.is_empty() {
+    if in_degrees && !file.vertex_colors.is_empty() {
+        writeln!(out, "#shader \"none\" \"VertexColour\"")?;
+    } else if in_degrees && file.vertices.is_empty() {
         // Nothing else would tell the dialect.
         writeln!(out, "#shader \"none\" \"none\"")?;
     }
@@ -79,10 +81,15 @@ pub fn write_to(file: &SceneFile, out: &mut impl Write) -> fmt::Result {
         true => foreign::write_material(out, &material.value),
         false => write_material(out, &material.value),
     })?;
+    // Without any colours, white ones tell the dialect and change nothing.
+    let white = if file.vertex_colors.is_empty() { Some(Vec3::ONE) } else { None };
+    let mut colors = file.vertex_colors.iter().copied().chain(std::iter::repeat(white));
     write_list(out, counted, "#vertex_num", &file.vertices, |out, Vertex { position, normal, texcoord }| {
-        // The colour of `unisa`'s vertices, which nothing shows, is white.
-        let color = if in_degrees { " 1 1 1" } else { "" };
-        writeln!(out, "#vertex {} {} {}{color}", Triple(*position), Triple(*normal), Pair(*texcoord))
+        write!(out, "#vertex {} {} {}", Triple(*position), Triple(*normal), Pair(*texcoord))?;
+        match colors.next().flatten().filter(|_| in_degrees) {
+            Some(color) => writeln!(out, " {}", Triple(color)),
+            None => writeln!(out),
+        }
     })?;
     for include in &file.includes {
         writeln!(out, "#ray_file {}", Name(&include.value.name))?;

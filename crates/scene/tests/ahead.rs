@@ -56,6 +56,21 @@ fn several_threads_read_what_one_reads() {
 }
 
 #[test]
+fn colours_of_vertices_keep_their_vertices() {
+    let options = LoadOptions::default();
+    // A row of vertices without colours, then one with, in another dialect and past what is read at once.
+    let colored = "1 0 1  0 0 1  .5 .5  .25 .5 .75";
+    let text = shapes(&[(100, "#shader \"a\" \"VertexColour.frag\"\n")])
+        .replace("#vertex 29", &format!("#vertex {colored}\n#vertex 29"));
+    assert!(same("colours", &text, &options));
+    let scene = read(3, &text, &options).scene.unwrap();
+    let file = &scene.files[0];
+    assert_eq!(file.vertex_colors.len(), file.vertices.len());
+    let given = file.vertex_colors.iter().zip(&file.vertices).filter(|(color, _)| color.is_some());
+    assert!(given.clone().count() > 1000 && given.clone().all(|(_, vertex)| vertex.position.x == 1.0));
+}
+
+#[test]
 fn comments_that_hold_directives_reach_across_pieces() {
     let text = shapes(&[(40_000, "/* all of this\n"), (260_000, "*/\n")]);
     let options = LoadOptions::default();

@@ -87,6 +87,37 @@ fn the_canonical_text() {
 }
 
 #[test]
+fn bump_images_and_colours_of_vertices_are_written_as_they_were_read() {
+    let of_hmc = "\
+#version HMCCS155FALL2002
+#camera 0 0 6 0 0 -1 0 1 0 30
+#material -n m0 -t a.bmp -u b.bmp --  0 0 0 1 1 1 0 0 0 0 0 0 0 0 1
+#material -n m1 -u \"two words.bmp\" --  0 0 0 1 1 1 0 0 0 0 0 0 0 0 1
+#material -n m2 -t c.bmp --  0 0 0 1 1 1 0 0 0 0 0 0 0 0 1
+#sphere -m m0 -t -u 10 --  0 0 0 1
+#box -m m1 -u -0.5 --  0 0 0 1 1 1
+#sphere -m m2 -t --  3 0 0 1
+#rayfile_end
+";
+    assert_eq!(write(&read(of_hmc)), of_hmc);
+    // What is used in several ways becomes several materials, which stay what they are.
+    let mixed =
+        of_hmc.replace("#rayfile_end", "#sphere -m m0 -u 2 -- 1 1 1 1 #sphere -m m0 -t d.bmp -- 2 2 2 1");
+    let once = read(&mixed);
+    assert_eq!(read(&write(&once)), once);
+    let of_unisa = "\
+#shader \"none\" \"VertexColour\"
+#camera 0 0 6 0 0 -1 0 1 0 30
+#vertex_num 3
+#vertex 0 0 0 0 0 1 0 0 0.5 0.25 1
+#vertex 1 0 0 0 0 1 1 0
+#vertex 0 1 0 0 0 1 0 1 0 0 0
+#shape_triangle -1 0 1 2
+";
+    assert_eq!(write(&read(of_unisa)), of_unisa);
+}
+
+#[test]
 fn an_empty_file_is_still_a_scene() {
     assert_eq!(write(&SceneFile::default()), "#light_num 0\n");
     assert_eq!(read("#light_num 0\n").items, []);
@@ -238,6 +269,7 @@ fn material(textures: u32) -> impl Strategy<Value = Material> {
             k_transmission: kt,
             index_of_refraction,
             texture,
+            bump: None,
             text,
             weights: None,
         },

@@ -8,4 +8,5 @@ mod gallery;
 mod hostile;
 mod real_scenes;
 mod round_trip;
+mod surfaces;
 mod tutorial;

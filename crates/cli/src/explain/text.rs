@@ -213,7 +213,7 @@ impl Page<'_> {
 
     fn own_light(&mut self, met: &Meeting, depth: usize) {
         let Some(material) = self.of.resolved.materials.get(met.material as usize) else { return };
-        let parts = [material.emissive, material.ambient, self.of.resolved.ambient, met.texture].map(vector);
+        let parts = [material.emissive, met.ambient, self.of.resolved.ambient, met.texture].map(vector);
         let [emissive, ambient, global, texture] = parts;
         let sum = self.patch(met.own_light);
         let line = format!("M_E + M_A·L_G·T_C = {emissive} + {ambient}·{global}·{texture} = {sum}");

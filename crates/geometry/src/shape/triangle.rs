@@ -99,6 +99,24 @@ impl Triangle {
         }
     }
 
+    /// The unit vectors in its plane along which s and t grow fastest; `None` where its texture coordinates stay on
+    /// a line.
+    pub fn texture_axes(&self) -> Option<[Vec3; 2]> {
+        let [v1, v2, v3] = self.vertices;
+        let [t1, t2, t3] = self.texcoords;
+        let (size, (first, second)) =
+            ((v2 - v1).abs().max((v3 - v1).abs()).max_element(), (t2 - t1, t3 - t1));
+        let [edge, other] = [v2 / size - v1 / size, v3 / size - v1 / size];
+        if first.perp_dot(second) == 0.0 {
+            return None;
+        }
+        // What is 1 more along the one edge and 0 along the other grows along these.
+        let normal = edge.cross(other);
+        let (along_first, along_second) = (other.cross(normal), normal.cross(edge));
+        let slope = |of_first: f64, of_second: f64| along_first * of_first + along_second * of_second;
+        Some([slope(first.x, second.x).try_normalize()?, slope(first.y, second.y).try_normalize()?])
+    }
+
     /// See [`super::Shape::bounds`].
     pub fn bounds(&self) -> Aabb {
         self.world_bounds(&Affine::IDENTITY)

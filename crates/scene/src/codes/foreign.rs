@@ -26,9 +26,10 @@ pub const EXPLANATIONS: &[Explanation] = &[
     ),
     explained(
         "ignored-part",
-        "A foreign dialect says something that the picture does not show: joints stand at their rest pose, programs \
-         for graphics cards, bump images and the colours of single vertices have no effect, and where light passes \
-         through a surface whose index of refraction is not above 0, it is not bent.",
+        "A foreign dialect says something that the picture does not show: joints stand at their rest pose; programs \
+         for graphics cards have no effect, nor have colours of vertices without the program `VertexColour`, nor a \
+         bump image that no shape asks for with `-u`; and where light passes through a surface whose index of \
+         refraction is not above 0, it is not bent.",
         "#shader \"a.vert\" \"a.frag\"\n#camera 0 0 50  0 0 -1  0 1 0  45",
         "",
     ),
@@ -57,7 +58,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
     ),
     explained(
         "repeated-name",
-        "In the dialect `hmc` shapes name their materials. Two materials have the same name; the first one counts.",
+        "In the dialect `hmc` shapes name their materials. Two materials have the same name; the last one counts.",
         "#version HMCCS155FALL2002\n#camera 0 0 50  0 0 -1  0 1 0  30\n#light_dir --  1 1 1  0 0 -1\n\
          #material -n red --  0 0 0  1 0 0  0 0 0  0 0 0  0 0 1\n\
          #material -n red --  0 0 0  1 0 0  0 0 0  0 0 0  0 0 1\n\

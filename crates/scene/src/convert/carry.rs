@@ -62,6 +62,12 @@ pub fn carry(written: &[SceneFile], mut file: SceneFile, to: Dialect, lost: &mut
         lose(lost, transmits, format!("see-through surfaces now {how} on its way from the lights"));
     }
     file.lights = lights(&mut file, to, lost);
+    if to != Dialect::Unisa {
+        super::colors::spell_out_vertex_colors(&mut file, to, lost);
+    }
+    if to != Dialect::Hmc {
+        super::bumps::drop_bumps(&mut file, to, lost);
+    }
     if !into.default_material {
         write_default_material(&mut file);
     }
@@ -285,6 +291,7 @@ fn write_default_material(file: &mut SceneFile) {
         k_transmission: 0.0,
         index_of_refraction: 1.0,
         texture: None,
+        bump: None,
         text: String::new(),
         weights: Some(Weights { shininess: 128.0, reflection: specular, transmission: Vec3::ZERO }),
     };
@@ -359,6 +366,9 @@ fn share_vertices(file: &mut SceneFile) {
                 normal: normals[corner],
                 texcoord: triangle.texcoords()[corner],
             });
+        }
+        if !file.vertex_colors.is_empty() {
+            file.vertex_colors.resize(file.vertices.len(), None);
         }
         let corners = [base, base + 1, base + 2];
         let first = push(&mut file.indexed_triangles, corners, triangles.materials[index]);

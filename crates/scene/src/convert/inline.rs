@@ -2,6 +2,7 @@
 
 use super::ConvertError;
 use super::MOST_SHAPES;
+use crate::model::BumpImage;
 use crate::model::Item;
 use crate::model::Material;
 use crate::model::Placed;
@@ -60,6 +61,9 @@ pub fn inline(
             }
         }
     }
+    if !whole.vertex_colors.is_empty() {
+        whole.vertex_colors.resize(whole.vertices.len(), None);
+    }
     Ok(whole)
 }
 
@@ -67,13 +71,19 @@ pub fn inline(
 fn add_lists(whole: &mut SceneFile, file: &SceneFile, texture: &dyn Fn(&SceneFile, &str) -> String) -> Bases {
     let bases = Bases { materials: whole.materials.len() as i32, vertices: whole.vertices.len() as u32 };
     let first_texture = whole.textures.len() as u32;
+    if !file.vertex_colors.is_empty() {
+        whole.vertex_colors.resize(whole.vertices.len(), None);
+        whole.vertex_colors.extend_from_slice(&file.vertex_colors);
+    }
     whole.vertices.extend_from_slice(&file.vertices);
     for Placed { value, span } in &file.textures {
         whole.textures.push(Placed { value: texture(file, value), span: *span });
     }
     for Placed { value, span } in &file.materials {
         let texture = value.texture.map(|number| number + first_texture);
-        whole.materials.push(Placed { value: Material { texture, ..value.clone() }, span: *span });
+        let moved = |bump: BumpImage| BumpImage { texture: bump.texture + first_texture, ..bump };
+        let bump = value.bump.map(moved);
+        whole.materials.push(Placed { value: Material { texture, bump, ..value.clone() }, span: *span });
     }
     bases
 }

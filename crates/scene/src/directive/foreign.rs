@@ -105,6 +105,7 @@ const MATERIAL_17: &[Form] = &[form(
     ],
     "#material 0 0 0  .2 0 0  1 0 0  1 1 1 128  0 0 0 1 -1 !!",
 )];
+const KEY_FILE: &[Form] = &[form(&[name(&["filename"], "name of the file")], "#key_file walk.key")];
 const CAMERA_FULL: &[Form] = &[form(&[EYE, VIEW, UP, RADIANS], "#camera 0 0 4  0 0 -1  0 1 0  1.05")];
 const SURFACE: &str = "A surface that shapes may name by its number.";
 const EYES: &str = "The eye and where it looks.";
@@ -126,16 +127,11 @@ static UVA: [Spec; 5] = [
         ],
     ),
     spec(Directive::JointEnd, "#joint_end", "Closes the joint opened last.", &[form(&[], "#joint_end")]),
-    spec(
-        Directive::KeyFile,
-        "#key_file",
-        "Key frames; they are not read.",
-        &[form(&[name(&["filename"], "name of the file")], "#key_file walk.key")],
-    ),
+    spec(Directive::KeyFile, "#key_file", "Key frames; they are not read.", KEY_FILE),
 ];
 
 /// `jhu`
-static JHU: [Spec; 11] = [
+static JHU: [Spec; 14] = [
     spec(Directive::Camera, "#camera", EYES, CAMERA_FULL),
     spec(Directive::Material, "#material", SURFACE, MATERIAL_17),
     spec(
@@ -179,6 +175,19 @@ static JHU: [Spec; 11] = [
         "#static_affine",
         "Transforms the one shape that follows.",
         &[form(&[COLUMNS], "#static_affine 1 0 0 0  0 1 0 0  0 0 1 0  0 2 0 1")],
+    ),
+    spec(
+        Directive::StaticAffine,
+        "#dynamic_affine",
+        "Moves the one shape that follows by key frames; it stays where it is.",
+        &[form(&[name(&["parameter"], "name of the motion")], "#dynamic_affine swing")],
+    ),
+    spec(Directive::KeyFile, "#key_file", "Key frames; they are not read.", KEY_FILE),
+    spec(
+        Directive::Shader,
+        "#shader",
+        "Programs for a graphics card; they are not used.",
+        &[form(&[name(&["vertex", "fragment"], "names of the programs' files")], "#shader a.vp b.fp")],
     ),
     spec(
         Directive::ListBegin,
@@ -384,7 +393,7 @@ static UNISA: [Spec; 4] = [
     spec(
         Directive::Shader,
         "#shader",
-        "Programs for a graphics card; they are not used.",
+        "Programs for a graphics card; only that of the name VertexColour counts: colours of vertices show.",
         &[form(
             &[name(&["vertex", "fragment"], "names of the programs' files")],
             "#shader \"a.vert\" \"a.frag\"",
@@ -400,7 +409,10 @@ static UNISA: [Spec; 4] = [
                     lengths(&["px", "py", "pz"], "point"),
                     numbers(&["nx", "ny", "nz"], "normal; 0 0 0 is the face's own normal"),
                     numbers(&["ts", "tt"], "texture coordinates"),
-                    numbers(&["r", "g", "b"], "colour; it is not used"),
+                    numbers(
+                        &["r", "g", "b"],
+                        "colour; under the shader VertexColour it shows in place of the material's",
+                    ),
                 ],
                 "#vertex 0 -1 0  0 0 1  .5 0  1 1 1",
             ),

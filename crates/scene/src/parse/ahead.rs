@@ -15,6 +15,7 @@ use crate::directive::Directive;
 use crate::model::Item;
 use crate::model::SceneFile;
 use crate::model::ShapeList;
+use crate::span::Span;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -60,6 +61,7 @@ struct Piece {
     scene: SceneFile,
     shape_count: u32,
     vertices: usize,
+    colored_vertex: Option<Span>,
     end: usize,
 }
 
@@ -97,8 +99,9 @@ impl Parser<'_> {
             Parser::new(PathBuf::new(), self.bytes, self.file, self.dialect, self.limits, &mut sink);
         parser.lexer.go_to(range.start);
         parser.shapes_until(range.end);
-        let Parser { scene, shape_count, lexer, seen: Seen { vertices, .. }, sink, .. } = parser;
-        sink.is_silent().then(|| Piece { scene, shape_count, vertices, end: lexer.at() })
+        let Parser { scene, shape_count, lexer, seen, sink, .. } = parser;
+        let Seen { vertices, colored_vertex, .. } = seen;
+        sink.is_silent().then(|| Piece { scene, shape_count, vertices, colored_vertex, end: lexer.at() })
     }
 
     fn shapes_until(&mut self, end: usize) {
@@ -119,7 +122,8 @@ impl Parser<'_> {
     }
 
     fn take_over(&mut self, piece: Piece) {
-        let Piece { scene, shape_count, vertices, end } = piece;
+        let Piece { scene, shape_count, vertices, colored_vertex, end } = piece;
+        self.seen.colored_vertex = self.seen.colored_vertex.or(colored_vertex);
         for item in scene.items {
             if let Item::Run { kind, first, count } = item {
                 match self.scene.items.last_mut() {
@@ -137,6 +141,10 @@ impl Parser<'_> {
         append(&mut self.scene.cones, scene.cones);
         append(&mut self.scene.triangles, scene.triangles);
         append(&mut self.scene.indexed_triangles, scene.indexed_triangles);
+        if !scene.vertex_colors.is_empty() {
+            self.scene.vertex_colors.resize(self.scene.vertices.len(), None);
+            self.scene.vertex_colors.extend(scene.vertex_colors);
+        }
         self.scene.vertices.extend(scene.vertices);
         self.shape_count += shape_count;
         self.seen.vertices += vertices;

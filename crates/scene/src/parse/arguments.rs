@@ -3,6 +3,7 @@
 use super::Call;
 use super::Parser;
 use crate::diagnostic::Diagnostic;
+use crate::dialect::Dialect;
 use crate::directive::ArgumentKind;
 use crate::directive::Arguments;
 use crate::directive::Directive;
@@ -139,6 +140,7 @@ impl Parser<'_> {
         let text = self.lexer.text(token);
         let message = format!("`{name}` of `{}` must be a number, not {}", self.call.spec.word, shown(text));
         let error = Diagnostic::error("not-a-number", message).at(self.span(token.start, token.end));
+        let error = self.with_directive(error, token.start);
         let has = |sign: &[u8]| text.windows(sign.len()).any(|window| window == sign);
         self.sink.error(match fault {
             NumberFault::NotFinite => error.label("infinity and NaN are not allowed"),
@@ -195,13 +197,21 @@ impl Parser<'_> {
     }
 
     fn surplus(&self, form: &Form, at_word: Span) -> Diagnostic {
-        let Call { spec, start, count, .. } = self.call;
+        let Call { spec, count, .. } = self.call;
         let error = Diagnostic::error("argument-count", takes(spec.word, &takes_count(form), count));
         let Some(token) = self.tokens.get(form.count) else { return error.at(at_word) };
         let label = if count == form.count + 1 { "one too many" } else { "the first one too many" };
-        let error = error.at(self.span(token.start, token.end)).label(label);
-        let between = self.bytes.get(start..token.start).unwrap_or_default();
-        if between.contains(&b'\n') { error.note_at(at_word, "the directive stands here") } else { error }
+        self.with_directive(error.at(self.span(token.start, token.end)).label(label), token.start)
+    }
+
+    /// Says where the directive at hand stands, for a fault on another line.
+    fn with_directive(&self, error: Diagnostic, place: usize) -> Diagnostic {
+        let start = self.call.start;
+        let between = self.bytes.get(start..place).unwrap_or_default();
+        if !between.contains(&b'\n') {
+            return error;
+        }
+        error.note_at(self.span(start, start + self.call.spec.word.len()), "the directive stands here")
     }
 
     /// Where the count is wrong, a word among the numbers is a second fault worth telling.
@@ -227,11 +237,17 @@ impl Parser<'_> {
         if !closed {
             return;
         }
+        let end = self.tokens.last().map_or(first.end, |token| token.end);
+        if self.dialect == Dialect::Hmc {
+            // As that course's program, which looks for `#version` first.
+            let span = self.span(start, end);
+            let message = "the text before `#version` is passed over";
+            return self.sink.warn("ignored-part", || Diagnostic::warning("ignored-part", message).at(span));
+        }
         let error = Diagnostic::error(
             "stray-text",
             format!("{} before the first directive", shown(self.lexer.text(first))),
         );
-        let end = self.tokens.last().map_or(first.end, |token| token.end);
         let error = error.at(self.span(start, end)).label("belongs to no directive");
         self.sink.error(if count > 1 { error.help("a comment begins with `//`") } else { error });
     }
@@ -266,7 +282,8 @@ impl Parser<'_> {
     /// Tells an error about one argument.
     pub(super) fn argument_error(&mut self, place: usize, code: &'static str, message: String, label: &str) {
         let span = self.arguments_span(place, 1);
-        self.sink.error(Diagnostic::error(code, message).at(span).label(label));
+        let place = usize::try_from(span.start).unwrap_or(0);
+        self.sink.error(self.with_directive(Diagnostic::error(code, message).at(span).label(label), place));
     }
 
     /// The name of argument `place` of the directive at hand.

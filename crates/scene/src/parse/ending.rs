@@ -27,6 +27,7 @@ impl Parser<'_> {
         self.finish_affines();
         self.unclosed_groups();
         self.finish_names();
+        self.finish_vertex_colors();
         self.check_hints();
         self.check_textures();
         self.check_materials();

@@ -2,6 +2,8 @@
 
 use super::Parser;
 use super::arguments;
+use super::bumps::BumpFile;
+use super::bumps::BumpFiles;
 use crate::diagnostic::Diagnostic;
 use crate::directive::Directive;
 use crate::directive::Spec;
@@ -41,11 +43,13 @@ enum Shown {
     File(Name),
 }
 
-/// A pair of material and texture that shapes use.
+/// What shapes use of a material: a texture, and how far its bump image leans their normals.
+#[derive(Clone, PartialEq, Eq, Hash)]
 struct Use {
     name: Name,
     shown: Shown,
-    span: Span,
+    /// The bits of the shape's `-u`; those of 0 without.
+    bump_scale: u64,
 }
 
 /// The flags of the directive at hand, and the names that the file has used and given so far.
@@ -56,10 +60,13 @@ pub(super) struct Named {
     name: Option<Name>,
     material: Option<Name>,
     texture: Option<Option<Name>>,
+    pub bump: Option<Option<Name>>,
     closed: bool,
-    uses: Vec<Use>,
-    use_of: HashMap<(Name, Shown), i32>,
+    uses: Vec<(Use, Span)>,
+    use_of: HashMap<Use, i32>,
     materials: HashMap<Name, usize>,
+    /// The bump images of materials, by the materials' numbers.
+    pub bumps: BumpFiles,
     textures: HashMap<Name, u32>,
     /// What the directives outside all groups say.
     root: Option<Mat4>,
@@ -88,7 +95,7 @@ impl Parser<'_> {
     pub(super) fn flags(&mut self, spec: &'static Spec, start: usize) -> bool {
         let named = &mut self.named;
         (named.flag_tokens, named.closed) = (0, false);
-        (named.name, named.material, named.texture) = (None, None, None);
+        (named.name, named.material, named.texture, named.bump) = (None, None, None, None);
         let mut flag = None;
         loop {
             let before = self.lexer.at();
@@ -126,6 +133,7 @@ impl Parser<'_> {
                 (false, Some(b'n')) => self.named.name = Some(value),
                 (false, Some(b'm')) => self.named.material = Some(value),
                 (false, Some(b't')) => self.named.texture = Some(Some(value)),
+                (false, Some(b'u')) => self.named.bump = Some(Some(value)),
                 (false, _) => {}
             }
         }
@@ -137,6 +145,7 @@ impl Parser<'_> {
             Some(b'n') => self.named.name.is_none(),
             Some(b'm') => self.named.material.is_none(),
             Some(b't') => self.named.texture == Some(None),
+            Some(b'u') => self.named.bump == Some(None),
             Some(b'c') | None => false,
             Some(_) => true,
         }
@@ -147,11 +156,14 @@ impl Parser<'_> {
             b'n' | b'm' => {}
             b'c' => self.named.closed = true,
             b't' => self.named.texture = Some(None),
+            b'u' if spec.directive == Directive::Material || SHAPES.contains(&spec.directive) => {
+                self.named.bump = Some(None);
+            }
             _other => {
                 let word = spec.word;
                 self.sink.warn("ignored-part", || {
                     let what = match flag {
-                        b'u' => "bump images are not supported",
+                        b'p' => "noise textures are not supported",
                         _other => "this flag is not known",
                     };
                     let message = format!("`-{}` of `{word}` has no effect: {what}", char::from(flag));
@@ -196,7 +208,8 @@ impl Parser<'_> {
                     Some(None) => Shown::Own,
                     Some(Some(file)) => Shown::File(file),
                 };
-                self.use_material(name, shown)
+                let bump_scale = self.bump_scale().to_bits();
+                self.use_material(Use { name, shown, bump_scale })
             }
         };
         self.take_material(number);
@@ -214,17 +227,15 @@ impl Parser<'_> {
         }
     }
 
-    fn use_material(&mut self, name: Name, shown: Shown) -> i32 {
-        let key = (name, shown);
-        if let Some(number) = self.named.use_of.get(&key) {
+    fn use_material(&mut self, used: Use) -> i32 {
+        if let Some(number) = self.named.use_of.get(&used) {
             return *number;
         }
         // A file of at most 2^32 bytes has fewer uses than that.
         let number = self.named.uses.len() as i32;
-        let (name, shown) = key.clone();
         let span = self.call_span();
-        self.named.uses.push(Use { name, shown, span });
-        self.named.use_of.insert(key, number);
+        self.named.uses.push((used.clone(), span));
+        self.named.use_of.insert(used, number);
         number
     }
 
@@ -284,7 +295,7 @@ impl Parser<'_> {
             &self.values;
         let ir = self.lenient_index(k_transmission > 0.0, ir, 14);
         let texture = match self.named.texture.clone() {
-            Some(Some(file)) => Some(self.texture_number(file)),
+            Some(Some(file)) => Some(self.texture_number(file, self.call_span())),
             Some(None) | None => None,
         };
         let name = self.named.name.clone().unwrap_or_default();
@@ -295,11 +306,10 @@ impl Parser<'_> {
             let shown = arguments::shown(&name);
             self.sink.warn("repeated-name", || {
                 let warning = Diagnostic::warning("repeated-name", format!("a second material {shown}"));
-                warning.at(span).label("is not used").note_at(first, "the first one counts")
+                warning.at(span).label("takes its place").note_at(first, "this one is not used")
             });
-        } else {
-            self.named.materials.insert(name, number);
         }
+        self.named.materials.insert(name, number);
         let specular = Vec3::new(sr, sg, sb);
         let shine = k_specular.clamp(0.0, 1.0);
         let weights = Weights {
@@ -316,10 +326,14 @@ impl Parser<'_> {
             k_transmission,
             index_of_refraction: ir,
             texture,
+            bump: None,
             text: String::new(),
             weights: Some(weights),
         };
         self.scene.materials.push(Placed { value, span });
+        if let Some(Some(file)) = self.named.bump.take() {
+            self.named.bumps.insert(number, BumpFile::new(file));
+        }
     }
 
     /// A faulty material has its name all the same, or each shape that uses it would be a fault of its own.
@@ -329,12 +343,12 @@ impl Parser<'_> {
         }
     }
 
-    fn texture_number(&mut self, file: Name) -> u32 {
+    pub(super) fn texture_number(&mut self, file: Name, span: Span) -> u32 {
         if let Some(number) = self.named.textures.get(&file) {
             return *number;
         }
         let number = self.scene.textures.len() as u32;
-        let (value, span) = (String::from_utf8_lossy(&file).into_owned(), self.call_span());
+        let value = String::from_utf8_lossy(&file).into_owned();
         self.scene.textures.push(Placed { value, span });
         self.named.textures.insert(file, number);
         number
@@ -382,7 +396,15 @@ impl Parser<'_> {
             return;
         }
         let uses = std::mem::take(&mut self.named.uses);
-        let numbers: Vec<i32> = uses.into_iter().map(|used| self.material_of_use(used)).collect();
+        let materials = std::mem::take(&mut self.named.materials);
+        let scales = uses
+            .iter()
+            .filter_map(|(used, _)| Some((*materials.get(&used.name)?, f64::from_bits(used.bump_scale))));
+        self.settle_bumps(scales);
+        self.named.materials = materials;
+        let numbers: Vec<i32> =
+            uses.into_iter().map(|(used, span)| self.material_of_use(used, span)).collect();
+        self.order_textures();
         let scene = &mut self.scene;
         renumber(&mut scene.spheres, &numbers);
         renumber(&mut scene.cuboids, &numbers);
@@ -395,8 +417,8 @@ impl Parser<'_> {
         self.seen.textures = self.scene.textures.len();
     }
 
-    fn material_of_use(&mut self, used: Use) -> i32 {
-        let Use { name, shown, span } = used;
+    fn material_of_use(&mut self, used: Use, span: Span) -> i32 {
+        let Use { name, shown, bump_scale } = used;
         let Some(number) = self.named.materials.get(&name).copied() else {
             let message = format!("no material has the name {}", arguments::shown(&name));
             self.sink.error(Diagnostic::error("unknown-material", message).at(span));
@@ -406,12 +428,13 @@ impl Parser<'_> {
         let texture = match shown {
             Shown::Nothing => None,
             Shown::Own => material.value.texture,
-            Shown::File(file) => Some(self.texture_number(file)),
+            Shown::File(file) => Some(self.texture_number(file, span)),
         };
-        if texture == material.value.texture {
+        let bump = self.bump_of_use(number, f64::from_bits(bump_scale), span);
+        if (texture, bump) == (material.value.texture, material.value.bump) {
             return number as i32;
         }
-        let value = Material { texture, ..material.value };
+        let value = Material { texture, bump, ..material.value };
         self.scene.materials.push(Placed { value, span: material.span });
         self.scene.materials.len() as i32 - 1
     }

@@ -45,6 +45,10 @@ const SHAPES: [Directive; 8] = [
 
 impl Parser<'_> {
     pub(super) fn static_affine(&mut self) {
+        if self.call.count == 1 {
+            self.ignored("`#dynamic_affine` has no effect: its shape stays where it is");
+            return self.open_affine(Mat4::IDENTITY);
+        }
         let columns = self.rows();
         let matrix = Mat4::from_cols_array(&columns);
         if fault_of(&matrix.transpose().to_cols_array()).is_some() {

@@ -65,6 +65,7 @@ impl Parser<'_> {
             k_transmission,
             index_of_refraction: ir,
             texture,
+            bump: None,
             text: self.word(),
             weights: None,
         };
@@ -75,16 +76,35 @@ impl Parser<'_> {
     pub(super) fn vertex(&mut self) {
         self.seen.vertices += 1;
         let &[px, py, pz, nx, ny, nz, ts, tt, r, g, b, ..] = &self.values;
-        let colored = self.call.count == VERTEX_OF_UNISA && [r, g, b] != [1.0; 3];
-        if colored && !self.seen.vertex_colors {
-            self.seen.vertex_colors = true;
-            self.ignored("the colours of vertices have no effect: surfaces have those of their material");
+        if self.call.count == VERTEX_OF_UNISA {
+            self.scene.vertex_colors.resize(self.scene.vertices.len(), None);
+            self.scene.vertex_colors.push(Some(Vec3::new(r, g, b)));
+            if self.seen.colored_vertex.is_none() && [r, g, b] != [1.0; 3] && [r, g, b] != [0.0; 3] {
+                self.seen.colored_vertex = Some(self.call_span());
+            }
         }
         self.scene.vertices.push(Vertex {
             position: Vec3::new(px, py, pz),
             normal: Vec3::new(nx, ny, nz),
             texcoord: Vec2::new(ts, tt),
         });
+    }
+
+    /// At the end of the file: colours that its shader does not show go.
+    pub(super) fn finish_vertex_colors(&mut self) {
+        let scene = &mut self.scene;
+        if self.seen.shows_vertex_colors && !scene.vertex_colors.is_empty() {
+            scene.vertex_colors.resize(scene.vertices.len(), None);
+            return;
+        }
+        scene.vertex_colors = Vec::new();
+        if let Some(span) = self.seen.colored_vertex {
+            self.sink.warn("ignored-part", || {
+                let message = "the colours of vertices have no effect: surfaces have those of their material";
+                let help = "where the second name of `#shader` is `VertexColour`, they show";
+                Diagnostic::warning("ignored-part", message).at(span).help(help)
+            });
+        }
     }
 
     pub(super) fn ray_file(&mut self) {

@@ -2,6 +2,7 @@
 
 use super::Parser;
 use crate::diagnostic::Diagnostic;
+use crate::dialect::Dialect;
 use crate::model::Material;
 use crate::model::Placed;
 use crate::model::Weights;
@@ -31,6 +32,7 @@ impl Parser<'_> {
             k_transmission: 0.0,
             index_of_refraction: ir,
             texture,
+            bump: None,
             text: self.word(),
             weights: Some(Weights { shininess, reflection: specular, transmission }),
         };
@@ -60,6 +62,11 @@ impl Parser<'_> {
     }
 
     pub(super) fn shader(&mut self) {
+        // The course's own program of this name shows the colours of vertices, and all others those of materials.
+        if self.dialect == Dialect::Unisa && self.word().to_ascii_lowercase().contains("vertexcolo") {
+            self.seen.shows_vertex_colors = true;
+            return;
+        }
         self.ignored("`#shader` has no effect: its programs are for a graphics card");
     }
 

@@ -8,6 +8,7 @@ use crate::model::Item;
 use crate::model::SceneFile;
 use crate::model::ShapeKind;
 use crate::resolved::Run;
+use crate::resolved::RunColors;
 use crate::resolved::TreeEvent;
 use crate::span::FileId;
 use crate::span::Span;
@@ -138,7 +139,8 @@ impl Flattener<'_> {
         let material_base = self.bases.get(file.0 as usize).copied().unwrap_or(0);
         let first_shape = self.flat.shape_count;
         self.flat.tree.push(TreeEvent::Run(self.flat.runs.len() as u32));
-        let colors = self.files.get(file.0 as usize).and_then(|file| file.colors_from(kind, first));
+        let colors =
+            self.files.get(file.0 as usize).map_or(RunColors::No, |file| run_colors(file, kind, first));
         self.flat.runs.push(Run { file, kind, first, count, frame, material_base, first_shape, colors });
         self.flat.shape_count = shape_count;
         Ok(())
@@ -165,6 +167,14 @@ impl Flattener<'_> {
         let error = error.at(span).label("from here on nothing can be placed");
         Diagnostic { notes, ..error }
             .help("scales this extreme flatten the shapes inside: check the matrices' scales")
+    }
+}
+
+fn run_colors(file: &SceneFile, kind: ShapeKind, first: u32) -> RunColors {
+    match file.colors_from(kind, first) {
+        Some((list, first)) => RunColors::Shapes { list, first },
+        None if kind == ShapeKind::IndexedTriangle && !file.vertex_colors.is_empty() => RunColors::Vertices,
+        None => RunColors::No,
     }
 }
 

@@ -4,12 +4,14 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Sink;
 use crate::dialect::Conventions;
 use crate::dialect::Dialect;
+use crate::model::BumpImage;
 use crate::model::Material;
 use crate::model::Placed;
 use crate::model::SceneFile;
 use crate::model::ShapeKind;
 use crate::model::Weights;
 use crate::number::General;
+use crate::procedural::Bump;
 use crate::procedural::Procedural;
 use crate::procedural::parse_clauses;
 use crate::resolved::ResolvedMaterial;
@@ -39,7 +41,12 @@ pub fn resolve(files: &[SceneFile], sink: &mut Sink) -> Materials {
         all.textures.extend(textures);
         for placed in &file.materials {
             let texture = check_texture(placed, file.textures.len(), sink).map(|tn| texture_base + tn);
-            all.materials.push(resolve_material(placed, texture, file.dialect.conventions(), sink));
+            let mut material = resolve_material(placed, texture, file.dialect.conventions(), sink);
+            let bump = placed.value.bump.filter(|bump| (bump.texture as usize) < file.textures.len());
+            if let Some(BumpImage { texture, scale }) = bump {
+                material.procedural.bumps.push(Bump::Image { texture: texture_base + texture, scale });
+            }
+            all.materials.push(material);
         }
     }
     all.materials.push(default_material());

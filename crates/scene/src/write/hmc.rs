@@ -89,6 +89,22 @@ fn texture_of<'a>(file: &'a SceneFile, material: &Material) -> Option<&'a str> {
     Some(&texture.value)
 }
 
+/// The bump image and its scale.
+fn bump_of<'a>(file: &'a SceneFile, material: &Material) -> Option<(&'a str, f64)> {
+    let bump = material.bump.filter(|bump| bump.scale != 0.0)?;
+    Some((&file.textures.get(bump.texture as usize)?.value, bump.scale))
+}
+
+/// A flag and the name of a file.
+fn write_file_flag(out: &mut impl Write, flag: &str, name: &str) -> fmt::Result {
+    // What begins with a `-` would be a flag.
+    if name.starts_with('-') {
+        write!(out, " {flag} \"{}\"", name.replace('"', ""))
+    } else {
+        write!(out, " {flag} {}", Name(name))
+    }
+}
+
 fn write_material(out: &mut impl Write, file: &SceneFile, number: usize, material: &Material) -> fmt::Result {
     let Material { ambient, diffuse, specular, emissive, .. } = material;
     let [ambient, diffuse, specular, emissive] = [*ambient, *diffuse, *specular, *emissive].map(Triple);
@@ -96,12 +112,10 @@ fn write_material(out: &mut impl Write, file: &SceneFile, number: usize, materia
         [material.k_specular, material.k_transmission, material.index_of_refraction].map(Shortest);
     write!(out, "#material -n m{number}")?;
     if let Some(name) = texture_of(file, material) {
-        // What begins with a `-` would be a flag.
-        if name.starts_with('-') {
-            write!(out, " -t \"{}\"", name.replace('"', ""))?;
-        } else {
-            write!(out, " -t {}", Name(name))?;
-        }
+        write_file_flag(out, "-t", name)?;
+    }
+    if let Some((name, _)) = bump_of(file, material) {
+        write_file_flag(out, "-u", name)?;
     }
     writeln!(out, " --  {ambient} {diffuse} {specular} {emissive} {ks} {kt} {ir}")
 }
@@ -179,6 +193,9 @@ fn write_flags(
         let material = file.materials.get(number);
         if material.is_some_and(|material| texture_of(file, &material.value).is_some()) {
             write!(out, " -t")?;
+        }
+        if let Some((_, scale)) = material.and_then(|material| bump_of(file, &material.value)) {
+            write!(out, " -u {}", Shortest(scale))?;
         }
     }
     if closed {

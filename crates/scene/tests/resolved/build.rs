@@ -71,6 +71,7 @@ impl Build {
             k_transmission: 0.0,
             index_of_refraction: 1.0,
             texture: None,
+            bump: None,
             text: String::new(),
             weights: None,
         };

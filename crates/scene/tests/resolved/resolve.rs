@@ -16,6 +16,7 @@ use dotray_scene::resolve::RESOLVER_CODES;
 use dotray_scene::resolve::resolve;
 use dotray_scene::resolve::resolve_within;
 use dotray_scene::resolved::Run;
+use dotray_scene::resolved::RunColors;
 use dotray_scene::resolved::TreeEvent;
 use dotray_scene::span::FileId;
 use dotray_scene::span::Span;
@@ -106,7 +107,7 @@ fn groups_share_one_frame_each() {
         frame,
         material_base: 0,
         first_shape,
-        colors: None,
+        colors: RunColors::No,
     };
     let expected = [
         run(ShapeKind::Sphere, 0, 1, 0, 0),

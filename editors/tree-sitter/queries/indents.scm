@@ -1,0 +1,2 @@
+(group) @indent.begin
+(group_end) @indent.branch @indent.end
