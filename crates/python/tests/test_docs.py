@@ -12,7 +12,7 @@ from conftest import ROOT
 import dotray
 
 MODULES = ["dotray", "dotray._look", "dotray._shapes", "dotray._scene", "dotray._image", "dotray._caster"]
-MODULES += ["dotray._values", "dotray._progress", "dotray.cluster"]
+MODULES += ["dotray._values", "dotray._progress", "dotray._camera", "dotray._options", "dotray._tree", "dotray._diagnostic", "dotray.cluster"]
 GUIDE = ROOT / "docs/python.md"
 
 

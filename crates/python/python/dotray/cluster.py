@@ -36,10 +36,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dotray import _dotray
-from dotray._image import Image
+from dotray._image import Image, add_layers
 from dotray._look import Camera
+from dotray._options import settings
 from dotray._progress import Bar, Progress
-from dotray._scene import Scene, add_layers, settings
+from dotray._scene import Scene
 from dotray._values import number, whole
 
 __all__ = ["LostWork", "frames", "render"]
