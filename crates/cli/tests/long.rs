@@ -76,6 +76,44 @@ fn killed_again_and_again_and_resumed_it_makes_the_same_picture() {
     }
 }
 
+/// The last line of an event of these.
+fn event(lines: &str, event: &str) -> Value {
+    let mut lines = lines.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    lines.rfind(|line| line["event"] == event).unwrap_or_else(|| panic!("no event `{event}`"))
+}
+
+#[test]
+fn layers_are_kept_like_the_picture() {
+    for picture in ["a.exr", "a.png"] {
+        let folder = Folder::new();
+        let line =
+            "render balls.ray a.png --size 1000x750 --threads 1 --layers depth,shadow,reflected,boxtests";
+        let line = line.replace("a.png", picture);
+        folder.run(&line.replace("a.", "whole.")).expect(0);
+        let mut child = start(&folder, &format!("{line} --checkpoint c.tiles --every 10ms"));
+        // All of the picture and some bands of the layers.
+        await_file(&folder, "c.tiles", 1000 * 750 * 12 + 500_000);
+        child.kill().and_then(|()| child.wait()).expect("killed");
+        assert!(!folder.names().contains(&picture.to_owned()), "it was not slow");
+        let resume = format!("{line} --checkpoint c.tiles --resume");
+        let refused = folder.run(&resume.replace(",boxtests", "")).expect(1);
+        refused.says("layers: depth,shadow,reflected,boxtests there, depth,shadow,reflected now");
+        // A time limit in the midst of the layers keeps them, too.
+        folder.run(&format!("{resume} --time-limit 1ms")).expect(4).says("% of the picture and its layers");
+        let said = folder.run(&format!("{resume} --progress json")).expect(0).stderr;
+        assert_eq!(event(&said, "picture")["finished_pixels"], 1000 * 750);
+        let layers = event(&said, "layers");
+        assert!(layers["finished_pixels"].as_u64().is_some_and(|kept| kept > 1000), "{layers}");
+        assert!(layers["finished_pixels"].as_u64().is_some_and(|kept| kept < 1000 * 750), "{layers}");
+        let mut made = folder.names();
+        made.retain(|name| name.starts_with("a."));
+        assert_eq!(made.len(), if picture == "a.exr" { 1 } else { 5 });
+        for name in made {
+            assert!(folder.get(&name) == folder.get(&name.replace("a.", "whole.")), "{name}");
+        }
+    }
+}
+
 #[test]
 fn damage_costs_the_damaged_tiles_only() {
     let folder = Folder::new();

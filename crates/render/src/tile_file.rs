@@ -36,6 +36,29 @@ pub struct TileFile {
     end: u64,
 }
 
+/// Tiles that a file may hold, the first of which has the number that follows those of the tiles known before.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    /// The tiles, in the order of their numbers.
+    pub tiles: &'a [Tile],
+    /// Numbers a pixel.
+    pub channels: u32,
+}
+
+impl Known<'_> {
+    /// The tile of a number, and its numbers a pixel.
+    fn find(known: &[Self], number: u32) -> Option<(Tile, u32)> {
+        let mut left = number as usize;
+        for Known { tiles, channels } in known {
+            match tiles.get(left) {
+                Some(tile) => return Some((*tile, *channels)),
+                None => left -= tiles.len(),
+            }
+        }
+        None
+    }
+}
+
 /// What was found in a file.
 #[derive(Debug)]
 pub struct Contents {
@@ -66,23 +89,17 @@ impl TileFile {
         Ok(Self { file: open(path)?, head: head_bytes(fingerprint), end: 0 })
     }
 
-    /// Reads what is there: shows each whole tile of `tiles` that has so many channels. Takes no more memory than a
-    /// tile.
+    /// Reads what is there: shows each whole tile that is `known`. Takes no more memory than a tile.
     ///
     /// # Errors
     /// What the system says.
-    pub fn read(
-        &mut self,
-        tiles: &[Tile],
-        channels: u32,
-        mut take: impl FnMut(TilePixels),
-    ) -> io::Result<Contents> {
+    pub fn read(&mut self, known: &[Known<'_>], mut take: impl FnMut(TilePixels)) -> io::Result<Contents> {
         let length = self.file.seek(SeekFrom::End(0))?;
         let mut contents = Contents { fingerprint: None, lost_bytes: 0 };
         let mut at = 0;
         self.end = 0;
         while at < length {
-            let read = match record_at(&mut self.file, at, tiles, channels)? {
+            let read = match record_at(&mut self.file, at, known)? {
                 Some(Record::Head(fingerprint, read)) => {
                     contents.fingerprint.get_or_insert(fingerprint);
                     read
@@ -139,7 +156,7 @@ impl TileFile {
 /// What the system says.
 pub fn fingerprint_of(path: &Path) -> io::Result<Option<Fingerprint>> {
     let mut file = TileFile { file: File::open(path)?, head: Vec::new(), end: 0 };
-    Ok(file.read(&[], 0, |_| {})?.fingerprint)
+    Ok(file.read(&[], |_| {})?.fingerprint)
 }
 
 /// Reads a file of tiles that nothing is added to; see [`TileFile::read`].
@@ -152,7 +169,8 @@ pub fn read_tiles(
     channels: u32,
     take: impl FnMut(TilePixels),
 ) -> io::Result<Contents> {
-    TileFile { file: File::open(path)?, head: Vec::new(), end: 0 }.read(tiles, channels, take)
+    let mut file = TileFile { file: File::open(path)?, head: Vec::new(), end: 0 };
+    file.read(&[Known { tiles, channels }], take)
 }
 
 /// The bytes of a head, as a file starts with them.
@@ -183,7 +201,7 @@ enum Record {
 }
 
 /// The whole record that starts here, if one does.
-fn record_at(file: &mut File, at: u64, tiles: &[Tile], channels: u32) -> io::Result<Option<Record>> {
+fn record_at(file: &mut File, at: u64, known: &[Known<'_>]) -> io::Result<Option<Record>> {
     let start = read_at_most(file, at, tile::HEAD)?;
     if let Some(rest) = start.strip_prefix(&HEAD_MARK) {
         let (Some(sum), Some(length)) = (rest.get(..8), rest.get(8..12).and_then(|l| l.try_into().ok()))
@@ -202,10 +220,13 @@ fn record_at(file: &mut File, at: u64, tiles: &[Tile], channels: u32) -> io::Res
         return Ok(Some(Record::Head(fingerprint, (HEAD_START + length) as u64)));
     }
     let number = TilePixels::number_in(&start);
-    let Some(tile) = number.and_then(|number| tiles.get(number as usize)) else { return Ok(None) };
-    let length = TilePixels::byte_length(tile, channels);
+    let Some((tile, channels)) = number.and_then(|number| Known::find(known, number)) else {
+        return Ok(None);
+    };
+    let length = TilePixels::byte_length(&tile, channels);
     let bytes = read_at_most(file, at, usize::try_from(length).unwrap_or(usize::MAX))?;
-    let pixels = TilePixels::from_bytes(&bytes).filter(|pixels| pixels.tile == *tile);
+    let pixels =
+        TilePixels::from_bytes(&bytes).filter(|pixels| pixels.tile == tile && pixels.channels == channels);
     Ok(pixels.map(|pixels| Record::Tile(pixels, length)))
 }
 
