@@ -311,8 +311,10 @@ def test_a_bar_is_shown(with_tqdm, capsys, monkeypatch):
     assert capsys.readouterr().err == "", "nobody looks"
 
 
+# A shell that puts its jobs into the background has them ignore the signal.
 CTRL_C = """
-import numpy as np, dotray, time
+import numpy as np, dotray, signal, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = dotray.Scene()
 scene.add_spheres(np.random.default_rng(0).random((1000, 3)), 0.02)
 scene.render(16, 16)

@@ -143,6 +143,14 @@ impl LayerFilm {
     }
 }
 
+/// Computes one band alone: its numbers depend on the world, the options, the layers and the band.
+pub fn layer_band(world: &World, options: &Options, wanted: &[Layer], band: &Tile) -> TilePixels {
+    let rows = Crop { x: band.x, y: band.y, width: band.width, height: band.height };
+    let samples = samples_of(world, &options_of(wanted, options), wanted, rows);
+    let channels = numbers_a_pixel(wanted) as u32;
+    TilePixels { tile: *band, channels, samples, counts: Stats::default() }
+}
+
 /// Computes the bands that the layers lack, unless the observer cancels it; it is shown each.
 ///
 /// # Errors
@@ -154,15 +162,12 @@ pub fn develop_layers(
     observer: &dyn Observer,
 ) -> Result<(), RenderError> {
     let lock = || film.lock().unwrap_or_else(PoisonError::into_inner);
-    let (missing, wanted, channels) = {
+    let (missing, wanted) = {
         let film = lock();
-        (film.missing(), film.wanted.clone(), film.channels())
+        (film.missing(), film.wanted.clone())
     };
-    let options = options_of(&wanted, options);
     let band = |tile: &Tile| {
-        let rows = Crop { x: tile.x, y: tile.y, width: tile.width, height: tile.height };
-        let samples = samples_of(world, &options, &wanted, rows);
-        let pixels = TilePixels { tile: *tile, channels, samples, counts: Stats::default() };
+        let pixels = layer_band(world, options, &wanted, tile);
         let progress = {
             let mut film = lock();
             film.store(&pixels);

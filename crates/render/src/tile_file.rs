@@ -13,6 +13,7 @@ use std::fs::File;
 use std::fs::OpenOptions;
 use std::fs::TryLockError;
 use std::io;
+use std::io::Cursor;
 use std::io::ErrorKind;
 use std::io::Read;
 use std::io::Seek;
@@ -94,30 +95,8 @@ impl TileFile {
     /// # Errors
     /// What the system says.
     pub fn read(&mut self, known: &[Known<'_>], mut take: impl FnMut(TilePixels)) -> io::Result<Contents> {
-        let length = self.file.seek(SeekFrom::End(0))?;
-        let mut contents = Contents { fingerprint: None, lost_bytes: 0 };
-        let mut at = 0;
-        self.end = 0;
-        while at < length {
-            let read = match record_at(&mut self.file, at, known)? {
-                Some(Record::Head(fingerprint, read)) => {
-                    contents.fingerprint.get_or_insert(fingerprint);
-                    read
-                }
-                Some(Record::Tile(pixels, read)) => {
-                    take(pixels);
-                    read
-                }
-                None => {
-                    let next = next_mark(&mut self.file, at + 1, length)?;
-                    contents.lost_bytes += next - at;
-                    at = next;
-                    continue;
-                }
-            };
-            at += read;
-            self.end = at;
-        }
+        let (contents, end) = read_all(&mut self.file, known, &mut take)?;
+        self.end = end;
         Ok(contents)
     }
 
@@ -173,6 +152,13 @@ pub fn read_tiles(
     file.read(&[Known { tiles, channels }], take)
 }
 
+/// Reads what such a file holds from its bytes; see [`TileFile::read`].
+pub fn read_bytes(bytes: &[u8], known: &[Known<'_>], mut take: impl FnMut(TilePixels)) -> Contents {
+    // Bytes in memory can always be read.
+    let nothing = Contents { fingerprint: None, lost_bytes: bytes.len() as u64 };
+    read_all(&mut Cursor::new(bytes), known, &mut take).map_or(nothing, |(contents, _)| contents)
+}
+
 /// The bytes of a head, as a file starts with them.
 pub fn head_bytes(fingerprint: &Fingerprint) -> Vec<u8> {
     let text = fingerprint.to_text().into_bytes();
@@ -195,13 +181,45 @@ fn open(path: &Path) -> io::Result<File> {
     }
 }
 
+/// What is there, and where the last whole record ends.
+fn read_all(
+    file: &mut (impl Read + Seek),
+    known: &[Known<'_>],
+    take: &mut dyn FnMut(TilePixels),
+) -> io::Result<(Contents, u64)> {
+    let length = file.seek(SeekFrom::End(0))?;
+    let mut contents = Contents { fingerprint: None, lost_bytes: 0 };
+    let (mut at, mut end) = (0, 0);
+    while at < length {
+        let read = match record_at(file, at, known)? {
+            Some(Record::Head(fingerprint, read)) => {
+                contents.fingerprint.get_or_insert(fingerprint);
+                read
+            }
+            Some(Record::Tile(pixels, read)) => {
+                take(pixels);
+                read
+            }
+            None => {
+                let next = next_mark(file, at + 1, length)?;
+                contents.lost_bytes += next - at;
+                at = next;
+                continue;
+            }
+        };
+        at += read;
+        end = at;
+    }
+    Ok((contents, end))
+}
+
 enum Record {
     Head(Fingerprint, u64),
     Tile(TilePixels, u64),
 }
 
 /// The whole record that starts here, if one does.
-fn record_at(file: &mut File, at: u64, known: &[Known<'_>]) -> io::Result<Option<Record>> {
+fn record_at(file: &mut (impl Read + Seek), at: u64, known: &[Known<'_>]) -> io::Result<Option<Record>> {
     let start = read_at_most(file, at, tile::HEAD)?;
     if let Some(rest) = start.strip_prefix(&HEAD_MARK) {
         let (Some(sum), Some(length)) = (rest.get(..8), rest.get(8..12).and_then(|l| l.try_into().ok()))
@@ -230,7 +248,7 @@ fn record_at(file: &mut File, at: u64, known: &[Known<'_>]) -> io::Result<Option
     Ok(pixels.map(|pixels| Record::Tile(pixels, length)))
 }
 
-fn read_at_most(file: &mut File, at: u64, length: usize) -> io::Result<Vec<u8>> {
+fn read_at_most(file: &mut (impl Read + Seek), at: u64, length: usize) -> io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(at))?;
     let mut bytes = Vec::new();
     file.take(length as u64).read_to_end(&mut bytes)?;
@@ -238,7 +256,7 @@ fn read_at_most(file: &mut File, at: u64, length: usize) -> io::Result<Vec<u8>> 
 }
 
 /// The next place at or after `at` where a record may start; `end` where there is none.
-fn next_mark(file: &mut File, at: u64, end: u64) -> io::Result<u64> {
+fn next_mark(file: &mut (impl Read + Seek), at: u64, end: u64) -> io::Result<u64> {
     const WINDOW: usize = 1 << 16;
     let mut at = at;
     while at < end {
