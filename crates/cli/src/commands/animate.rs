@@ -112,7 +112,7 @@ impl Animate<'_> {
         let set = self.stage.set(frame)?;
         let start = Instant::now();
         let Made { rendering: Rendering { image, stats, .. }, layers: (layers, looking), .. } =
-            make(set.world, &plan, &set.extras, None, deadline)?;
+            make(set.world, &plan, set.extras, None, deadline)?;
         let seconds = start.elapsed().as_secs_f64() - looking;
         let image = set.extras.apply(image, set.world, &plan)?;
         let Encoded { picture, layers } = encoded(&image, layers, &plan)?;
