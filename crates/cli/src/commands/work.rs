@@ -45,6 +45,10 @@ pub fn run(typed: &WorkArgs, color: When) -> Result<(), Failure> {
             typed.piece
         )));
     };
+    if piece.parts.is_empty() {
+        say(&format!("piece {} is empty: the picture has fewer tiles than the plan has pieces", typed.piece));
+        return Ok(());
+    }
     let folder = &typed.output;
     fs::create_dir_all(folder).map_err(|error| Failure::file("make the folder", folder, &error))?;
     interrupt::watch();
