@@ -86,7 +86,7 @@ finish() {
     done
 }
 finish
-grep -q REQUEUE slurm-*.out || { echo "the task was not stopped"; cat slurm-*.out; exit 1; }
+scontrol show job "${job}_0" | grep -q 'Restarts=1' || { echo "the task was not started again"; exit 1; }
 dotray merge room.plan pieces -o room.png || { cat slurm-*.out; exit 1; }
 cmp room.png whole.png
 # As the page says: the merge tells which numbers to give to --array.
