@@ -115,9 +115,10 @@ def test_faults_of_the_caller_are_not_tried_again(expected):
         ({"piece": 40}, "multiple of 32"),
         ({"retries": -1}, "retries"),
         ({"piece": 8}, "piece"),
+        ({"executor": 3}, "executor is 3: expected an executor"),
     ]:
         with pytest.raises(ValueError, match=message):
-            cluster.render(scene(), 200, 150, executor=executor, **arguments)
+            cluster.render(scene(), 200, 150, **{"executor": executor, **arguments})
 
 
 class Counting(ThreadPoolExecutor):

@@ -66,6 +66,8 @@ class Engine:
         self.make: Callable[[], Executor] | None = None
         self.executor: Any = executor
         if not hasattr(executor, "submit"):
+            if not callable(executor):
+                raise ValueError(f"executor is {executor!r}: expected an executor, or a function that makes one")
             self.make = executor
             self.executor = executor()
         self.key = hashlib.sha256(content).hexdigest()
