@@ -6,14 +6,12 @@ use dotray::image::encode;
 use dotray::image::encode_exr_layers;
 use dotray::render::LayerPicture;
 use dotray::render::World;
-use dotray::render::render_layers;
 use dotray::scene::Resolved;
 use dotray::scene::Sources;
 use std::path::PathBuf;
 
 use crate::background;
 use crate::exit::Failure;
-use crate::interrupt;
 use crate::layer_args::Background;
 use crate::layer_args::Overlay;
 use crate::layers;
@@ -22,7 +20,6 @@ use crate::output;
 use crate::overlay;
 use crate::overlay::Wire;
 use crate::plan::Plan;
-use crate::progress::Watcher;
 use crate::tree::Tree;
 
 /// What must be known before the scene is baked.
@@ -98,17 +95,4 @@ pub fn encoded(image: &Image, layers: Vec<LayerPicture>, plan: &Plan) -> Result<
     let file = |(path, layer): (PathBuf, &LayerPicture)| Ok((path, layers::png(layer)?));
     let layers = layer_paths(plan).into_iter().zip(&layers).map(file).collect::<Result<Vec<_>, Failure>>()?;
     Ok(Encoded { picture, layers })
-}
-
-/// Computes the layers that are asked for.
-pub fn layers_of(world: &World, plan: &Plan) -> Result<Vec<LayerPicture>, Failure> {
-    if plan.layers.is_empty() {
-        return Ok(Vec::new());
-    }
-    let window = plan.options.window();
-    let watcher =
-        Watcher::new(u64::from(window.width) * u64::from(window.height), plan.long.progress, plan.quiet);
-    let layers = render_layers(world, &plan.options, &plan.layers, &watcher);
-    watcher.finish();
-    layers?.ok_or_else(interrupt::failure)
 }

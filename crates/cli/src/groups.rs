@@ -1,4 +1,4 @@
-//! The groups of a scene's main file, by name or by a path of numbers.
+//! The groups of a scene's files, by name or by a path of numbers.
 
 use dotray::scene::Scene;
 use dotray::scene::Sources;
@@ -8,31 +8,47 @@ use dotray::scene::model::SceneFile;
 /// A group that can be asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GroupName {
+    /// The number of its file in the scene.
+    pub file: usize,
     /// Its number in the file's list of groups.
     pub number: u32,
-    /// Its place: numbers from 0 among the groups that stand in the same one, such as 0/2.
+    /// Its place: numbers from 0 among the groups that stand in the same one, such as 0/2; in an included file behind
+    /// the file's name, such as hand.ray:0/2.
     pub path: String,
     /// The text of a comment `// name` behind `#group_begin` on its line.
     pub name: Option<String>,
+    /// The name behind that of the included file.
+    full_name: Option<String>,
 }
 
-/// The groups of the main file in order.
+/// The groups of all files in order.
 pub fn groups_of(scene: &Scene, sources: &Sources) -> Vec<GroupName> {
-    let Some(main) = scene.files.first() else { return Vec::new() };
+    let files = scene.files.iter().enumerate();
+    files.flat_map(|(number, file)| groups_in(scene, number, file, sources)).collect()
+}
+
+/// What stands before the places and names of groups in a file: nothing in the main one.
+fn prefix(scene: &Scene, number: usize) -> String {
+    let mut includes = scene.files.iter().flat_map(|file| &file.includes);
+    let include = includes.find(|include| include.value.file.0 as usize == number).filter(|_| number > 0);
+    include.map_or_else(String::new, |include| format!("{}:", include.value.name))
+}
+
+fn groups_in(scene: &Scene, number: usize, file: &SceneFile, sources: &Sources) -> Vec<GroupName> {
+    let prefix = prefix(scene, number);
     let mut found = Vec::new();
     // The paths of the open groups, each with how many groups have begun in it.
-    let mut open: Vec<(String, u32)> = vec![(String::new(), 0)];
-    for item in &main.items {
+    let mut open: Vec<(String, u32)> = vec![(prefix.clone(), 0)];
+    for item in &file.items {
         match item {
-            Item::Open(number) => {
+            Item::Open(group) => {
+                let inner = open.len() > 1;
                 let Some((around, count)) = open.last_mut() else { continue };
-                let path = if around.is_empty() { count.to_string() } else { format!("{around}/{count}") };
+                let path = if inner { format!("{around}/{count}") } else { format!("{around}{count}") };
                 *count += 1;
-                found.push(GroupName {
-                    number: *number,
-                    path: path.clone(),
-                    name: name(main, *number, sources),
-                });
+                let name = name(file, *group, sources);
+                let full_name = name.as_ref().map(|name| format!("{prefix}{name}"));
+                found.push(GroupName { file: number, number: *group, path: path.clone(), name, full_name });
                 open.push((path, 0));
             }
             Item::Close => {
@@ -54,12 +70,14 @@ fn name(file: &SceneFile, number: u32, sources: &Sources) -> Option<String> {
     (!name.is_empty()).then(|| name.to_owned())
 }
 
-/// The number of the group that a path or a name stands for.
-pub fn find(groups: &[GroupName], wanted: &str) -> Result<u32, String> {
-    let is_wanted = |group: &&GroupName| group.path == wanted || group.name.as_deref() == Some(wanted);
+/// The numbers of the file and of the group that a path or a name stands for.
+pub fn find(groups: &[GroupName], wanted: &str) -> Result<(usize, u32), String> {
+    let names =
+        |group: &GroupName| [group.name.as_deref(), group.full_name.as_deref()].contains(&Some(wanted));
+    let is_wanted = |group: &&GroupName| group.path == wanted || names(group);
     let found: Vec<&GroupName> = groups.iter().filter(is_wanted).collect();
     match found[..] {
-        [one] => Ok(one.number),
+        [one] => Ok((one.file, one.number)),
         [] => {
             const SHOWN: usize = 12;
             let mut known: Vec<String> = groups
@@ -73,8 +91,8 @@ pub fn find(groups: &[GroupName], wanted: &str) -> Result<u32, String> {
             if groups.len() > SHOWN {
                 known.push(format!("and {} more", groups.len() - SHOWN));
             }
-            let known = if known.is_empty() { "it has none".to_owned() } else { known.join(", ") };
-            Err(format!("the scene's file has no group `{wanted}`: {known}"))
+            let known = if known.is_empty() { "they have none".to_owned() } else { known.join(", ") };
+            Err(format!("the scene's files have no group `{wanted}`: {known}"))
         }
         _ => {
             let paths: Vec<&str> = found.iter().map(|group| group.path.as_str()).collect();
@@ -102,7 +120,8 @@ mod tests {
         let groups = groups_of(&loaded.scene.expect("a scene"), &loaded.sources);
         let paths: Vec<&str> = groups.iter().map(|group| group.path.as_str()).collect();
         assert_eq!(paths, ["0", "0/0", "0/1", "1"]);
-        assert_eq!((find(&groups, "hand"), find(&groups, "0/0"), find(&groups, "1")), (Ok(2), Ok(1), Ok(3)));
+        let numbers = ["hand", "0/0", "1"].map(|wanted| find(&groups, wanted));
+        assert_eq!(numbers, [Ok((0, 2)), Ok((0, 1)), Ok((0, 3))]);
         assert!(find(&groups, "arm").unwrap_err().ends_with("say 0 or 1"));
         assert!(find(&groups, "leg").unwrap_err().contains("0 (arm), 0/0, 0/1 (hand), 1 (arm)"));
     }

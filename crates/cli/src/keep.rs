@@ -2,9 +2,10 @@
 
 use dotray::render::Film;
 use dotray::render::Fingerprint;
-use dotray::render::Picture;
+use dotray::render::LayerFilm;
 use dotray::render::TileFile;
 use dotray::render::TilePixels;
+use dotray::render::tile_file::Known;
 use dotray::render::tile_file::fingerprint_of;
 use serde_json::json;
 use std::fs;
@@ -18,6 +19,34 @@ use std::sync::PoisonError;
 use crate::events;
 use crate::exit::Failure;
 use crate::exit::say;
+
+/// What the tiles of a picture and the bands of its layers are put together on.
+pub struct Films {
+    /// The picture.
+    pub picture: Mutex<Film>,
+    /// Its layers.
+    pub layers: Mutex<LayerFilm>,
+}
+
+impl Films {
+    /// The picture, for a moment.
+    pub fn picture(&self) -> MutexGuard<'_, Film> {
+        self.picture.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The layers, for a moment.
+    pub fn layers(&self) -> MutexGuard<'_, LayerFilm> {
+        self.layers.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Everything that is finished, as a file holds it.
+    fn bytes(&self) -> Vec<u8> {
+        let (picture, layers) = (self.picture(), self.layers());
+        let tiles = picture.tiles().iter().filter_map(|tile| picture.pixels(tile));
+        let bands = layers.bands().iter().filter_map(|band| layers.pixels(band));
+        tiles.chain(bands).flat_map(|tile| tile.to_bytes()).collect()
+    }
+}
 
 /// A checkpoint that is being written.
 pub struct Keep {
@@ -35,13 +64,12 @@ struct State {
 }
 
 impl Keep {
-    /// Begins a checkpoint, or goes on with one: then its tiles come into the film.
+    /// Begins a checkpoint, or goes on with one: then its tiles come into the films.
     pub fn begin(
         path: &Path,
         resume: bool,
         fingerprint: Fingerprint,
-        picture: &Picture<'_>,
-        film: &mut Film,
+        films: &Films,
     ) -> Result<Self, Failure> {
         let file = match (fs::metadata(path), resume) {
             (Ok(metadata), _) if metadata.is_dir() => {
@@ -53,7 +81,7 @@ impl Keep {
                     path.display()
                 )));
             }
-            (Ok(_), true) => load(path, &fingerprint, picture, film)?,
+            (Ok(_), true) => load(path, &fingerprint, films)?,
             (Err(error), _) if error.kind() == io::ErrorKind::NotFound => {
                 tracing::debug!("beginning the checkpoint {}", path.display());
                 // The message names the file.
@@ -81,7 +109,7 @@ impl Keep {
 
     /// Adds what is finished to the file; where that fails, it is told, and tried again the next time. True where all
     /// is kept.
-    pub fn save(&self, film: &Mutex<Film>) -> bool {
+    pub fn save(&self, films: &Films) -> bool {
         let mut state = self.state();
         let there = fs::exists(&self.path).unwrap_or(true);
         if there && state.pending.is_empty() {
@@ -95,7 +123,7 @@ impl Keep {
             }
             saved
         } else {
-            self.begin_again(&mut state, film)
+            self.begin_again(&mut state, films)
         };
         match saved {
             Ok(()) => {
@@ -120,12 +148,9 @@ impl Keep {
     }
 
     /// Somebody has taken the file away: everything that is finished goes into a new one.
-    fn begin_again(&self, state: &mut State, film: &Mutex<Film>) -> io::Result<()> {
+    fn begin_again(&self, state: &mut State, films: &Films) -> io::Result<()> {
         let mut file = TileFile::create(&self.path, &self.fingerprint)?;
-        let film = film.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut all = Vec::new();
-        film.tiles().iter().filter_map(|tile| film.pixels(tile)).for_each(|tile| all.extend(tile.to_bytes()));
-        drop(film);
+        let all = films.bytes();
         // Said before the file is there, lest nobody hears it who only waits for the file.
         say(&format!(
             "warning: the checkpoint `{}` had vanished; all that is finished goes into a new one",
@@ -150,12 +175,7 @@ impl Keep {
     }
 }
 
-fn load(
-    path: &Path,
-    fingerprint: &Fingerprint,
-    picture: &Picture<'_>,
-    film: &mut Film,
-) -> Result<TileFile, Failure> {
+fn load(path: &Path, fingerprint: &Fingerprint, films: &Films) -> Result<TileFile, Failure> {
     let fault = |error: io::Error| Failure::file("go on with", path, &error);
     let name = path.display();
     let Some(there) = fingerprint_of(path).map_err(fault)? else {
@@ -171,10 +191,15 @@ fn load(
         )));
     }
     let mut file = TileFile::open(path, fingerprint).map_err(fault)?;
-    let channels = if picture.options().transparent { 4 } else { 3 };
+    let (mut picture, mut layers) = (films.picture(), films.layers());
+    let (tiles, bands) = (picture.tiles().to_vec(), layers.bands().to_vec());
+    let known = [
+        Known { tiles: &tiles, channels: picture.channels() },
+        Known { tiles: &bands, channels: layers.channels() },
+    ];
     let contents = file
-        .read(picture.tiles(), channels, |pixels| {
-            film.store(&pixels);
+        .read(&known, |pixels| {
+            let _known = picture.store(&pixels) || layers.store(&pixels);
         })
         .map_err(fault)?;
     if contents.lost_bytes > 0 {
@@ -183,7 +208,7 @@ fn load(
             "warning: {lost} bytes of the checkpoint `{name}` are damaged; only their tiles are made again"
         ));
     }
-    let progress = film.progress();
+    let progress = picture.progress();
     tracing::debug!("{} of {} pixels are in {name}", progress.finished_pixels, progress.total_pixels);
     Ok(file)
 }

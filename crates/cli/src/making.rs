@@ -1,15 +1,18 @@
 //! Tracing a picture while its tiles are kept, its state is shown, and somebody may stop it.
 
 use dotray::image::encode;
-use dotray::render::Film;
 use dotray::render::Fingerprint;
+use dotray::render::LayerFilm;
+use dotray::render::LayerPicture;
 use dotray::render::Observer;
 use dotray::render::Picture;
 use dotray::render::Progress;
+use dotray::render::RenderError;
 use dotray::render::Rendering;
 use dotray::render::TilePixels;
 use dotray::render::World;
 use dotray::render::develop;
+use dotray::render::develop_layers;
 use serde_json::json;
 use std::sync::Condvar;
 use std::sync::Mutex;
@@ -25,6 +28,7 @@ use crate::exit::Failure;
 use crate::exit::say;
 use crate::extras::Extras;
 use crate::interrupt;
+use crate::keep::Films;
 use crate::keep::Keep;
 use crate::meaning::Place;
 use crate::output;
@@ -34,10 +38,12 @@ use crate::progress::Watcher;
 /// How often tiles are kept where nobody says it.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// A picture, and the checkpoint to be removed once it is written.
+/// A picture with its layers, and the checkpoint to be removed once they are written.
 pub struct Made {
     /// The picture.
     pub rendering: Rendering,
+    /// Its layers, and the seconds that they took now.
+    pub layers: (Vec<LayerPicture>, f64),
     /// Its checkpoint.
     pub keep: Option<Keep>,
 }
@@ -78,19 +84,24 @@ struct Work<'a> {
     world: &'a World,
     plan: &'a Plan,
     extras: &'a Extras,
-    film: Mutex<Film>,
+    films: Films,
+    keep: Option<Keep>,
+    deadline: Option<Instant>,
 }
 
 impl Work<'_> {
-    /// The share of the picture that is finished, for people; never 100 % before the end.
-    fn percent(&self) -> u64 {
-        let progress = self.film.lock().unwrap_or_else(PoisonError::into_inner).progress();
-        100 * progress.finished_pixels / progress.total_pixels.max(1)
+    /// The share of the picture that is finished, and that of the picture and its layers; never 100 % before the end.
+    fn percents(&self) -> (u64, u64) {
+        let (picture, layers) = (self.films.picture().progress(), self.films.layers().progress());
+        let percent = |finished: u64, total: u64| 100 * finished / total.max(1);
+        let both =
+            (picture.finished_pixels + layers.finished_pixels, picture.total_pixels + layers.total_pixels);
+        (percent(picture.finished_pixels, picture.total_pixels), percent(both.0, both.1))
     }
 
     /// Writes the picture so far.
     fn write_partial(&self) -> Result<(), Failure> {
-        let image = self.film.lock().unwrap_or_else(PoisonError::into_inner).image().clone();
+        let image = self.films.picture().image().clone();
         let image = self.extras.apply(image, self.world, self.plan)?;
         output::write(&self.plan.output, &encode(&image, self.plan.format, &self.plan.encode)?)?;
         tracing::debug!("wrote the picture so far");
@@ -98,6 +109,47 @@ impl Work<'_> {
             events::emit("saved", json!({ "kind": "partial", "file": path.display().to_string() }));
         }
         Ok(())
+    }
+
+    /// Makes one part of it, the picture or the layers, while it is watched and kept. Fails where it was stopped.
+    fn part(
+        &self,
+        progress: &Progress,
+        develop: impl FnOnce(&Overseer<'_>) -> Result<(), RenderError>,
+    ) -> Result<(), Failure> {
+        let long = &self.plan.long;
+        let watcher = Watcher::new(progress.total_pixels, long.progress, self.plan.quiet);
+        watcher.tile_finished(progress);
+        let overseer = Overseer {
+            watcher,
+            keep: self.keep.as_ref(),
+            deadline: self.deadline,
+            late: AtomicBool::new(false),
+            ended: Mutex::new(false),
+            end: Condvar::new(),
+        };
+        let developed = std::thread::scope(|scope| {
+            if overseer.keep.is_some() || long.partial_every.is_some() {
+                scope.spawn(|| self.save_regularly(&overseer));
+            }
+            let developed = develop(&overseer);
+            *overseer.ended.lock().unwrap_or_else(PoisonError::into_inner) = true;
+            overseer.end.notify_all();
+            developed
+        });
+        overseer.watcher.finish();
+        developed?;
+        if self.films.picture().is_complete() && self.films.layers().is_complete() {
+            return Ok(());
+        }
+        let late = overseer.late.load(Ordering::Relaxed) && !interrupt::pressed();
+        // The layers come after the picture, so a picture that is there was not stopped.
+        if !late && !interrupt::pressed() { Ok(()) } else { Err(stopped(self, late)) }
+    }
+
+    /// Keeps what is finished; true where all of it is kept.
+    fn save(&self) -> Option<bool> {
+        self.keep.as_ref().map(|keep| keep.save(&self.films))
     }
 
     /// Keeps tiles and writes the picture so far, each at its times, until all tiles are there.
@@ -118,8 +170,8 @@ impl Work<'_> {
                 return;
             }
             drop(ended);
-            if let Some(keep) = overseer.keep.filter(|_| due(next_keep)) {
-                keep.save(&self.film);
+            if due(next_keep) {
+                self.save();
                 next_keep = after(every);
             }
             if due(next_partial) {
@@ -136,7 +188,17 @@ impl Work<'_> {
     }
 }
 
-/// Traces the picture until the deadline; with a fingerprint, its checkpoint is kept.
+/// Tells programs how large a picture or its layers are, and how much of it a checkpoint has brought.
+fn tell(event: &str, plan: &Plan, tiles: usize, progress: &Progress) {
+    let window = plan.options.window();
+    events::emit(
+        event,
+        json!({ "width": window.width, "height": window.height, "tiles": tiles,
+                "finished_pixels": progress.finished_pixels, "total_pixels": progress.total_pixels }),
+    );
+}
+
+/// Traces the picture and its layers until the deadline; with a fingerprint, their checkpoint is kept.
 pub fn make(
     world: &World,
     plan: &Plan,
@@ -145,57 +207,43 @@ pub fn make(
     deadline: Option<Instant>,
 ) -> Result<Made, Failure> {
     let start = Instant::now();
-    let long = &plan.long;
     let picture = Picture::new(world, &plan.options)?;
-    let mut film = picture.film()?;
-    let keep = match (&long.checkpoint, fingerprint) {
-        (Some(path), Some(fingerprint)) => {
-            Some(Keep::begin(path, long.resume, fingerprint, &picture, &mut film)?)
-        }
+    let layers = LayerFilm::new(&plan.options, &plan.layers)?;
+    let films = Films { picture: Mutex::new(picture.film()?), layers: Mutex::new(layers) };
+    let keep = match (&plan.long.checkpoint, fingerprint) {
+        (Some(path), Some(fingerprint)) => Some(Keep::begin(path, plan.long.resume, fingerprint, &films)?),
         (Some(_) | None, _) => None,
     };
-    let window = plan.options.window();
-    let progress = film.progress();
-    events::emit(
-        "picture",
-        json!({ "width": window.width, "height": window.height, "tiles": picture.tiles().len(),
-                "finished_pixels": progress.finished_pixels, "total_pixels": progress.total_pixels }),
-    );
-    let watcher = Watcher::new(progress.total_pixels, long.progress, plan.quiet);
-    watcher.tile_finished(&progress);
-    let overseer = Overseer {
-        watcher,
-        keep: keep.as_ref(),
-        deadline,
-        late: AtomicBool::new(false),
-        ended: Mutex::new(false),
-        end: Condvar::new(),
-    };
-    let work = Work { picture: &picture, world, plan, extras, film: Mutex::new(film) };
-    let developed = std::thread::scope(|scope| {
-        if overseer.keep.is_some() || long.partial_every.is_some() {
-            scope.spawn(|| work.save_regularly(&overseer));
-        }
-        let developed = develop(work.picture, &work.film, &overseer);
-        *overseer.ended.lock().unwrap_or_else(PoisonError::into_inner) = true;
-        overseer.end.notify_all();
-        developed
-    });
-    overseer.watcher.finish();
-    developed?;
-    let complete = work.film.lock().unwrap_or_else(PoisonError::into_inner).is_complete();
-    let kept = keep.as_ref().map(|keep| keep.save(&work.film));
-    if !complete {
-        let late = overseer.late.load(Ordering::Relaxed) && !interrupt::pressed();
-        return Err(stopped(&work, keep.as_ref().filter(|_| kept == Some(true)), late));
+    let work = Work { picture: &picture, world, plan, extras, films, keep, deadline };
+    let progress = work.films.picture().progress();
+    tell("picture", plan, picture.tiles().len(), &progress);
+    work.part(&progress, |overseer| develop(work.picture, &work.films.picture, overseer))?;
+    let looking = Instant::now();
+    if !plan.layers.is_empty() {
+        let (bands, progress) = {
+            let layers = work.films.layers();
+            (layers.bands().len(), layers.progress())
+        };
+        tell("layers", plan, bands, &progress);
+        work.part(&progress, |overseer| develop_layers(world, &plan.options, &work.films.layers, overseer))?;
     }
-    let film = work.film.into_inner().unwrap_or_else(PoisonError::into_inner);
-    Ok(Made { rendering: Rendering::of(&picture, film, start), keep })
+    let seconds = looking.elapsed().as_secs_f64();
+    work.save();
+    let Work { films: Films { picture: film, layers }, keep, .. } = work;
+    let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let layers = layers.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut rendering = Rendering::of(&picture, film, start);
+    if let Some((_, trace)) = rendering.stats.seconds.iter_mut().find(|(stage, _)| *stage == "trace") {
+        *trace -= seconds;
+    }
+    Ok(Made { rendering, layers: (layers.into_pictures(), seconds), keep })
 }
 
 /// What is to be said and written of a picture that was stopped.
-fn stopped(work: &Work<'_>, keep: Option<&Keep>, late: bool) -> Failure {
-    let percent = work.percent();
+fn stopped(work: &Work<'_>, late: bool) -> Failure {
+    let kept = work.save();
+    let keep = work.keep.as_ref().filter(|_| kept == Some(true));
+    let (percent, of_all) = work.percents();
     let mut kept = Vec::new();
     let long = &work.plan.long;
     if late && long.time_limit.is_some() || long.partial_every.is_some() {
@@ -210,7 +258,8 @@ fn stopped(work: &Work<'_>, keep: Option<&Keep>, late: bool) -> Failure {
     }
     if let Some(keep) = keep {
         let path = keep.path().display();
-        kept.push(format!("`{path}` keeps {percent} % of the picture; go on with:\n  {}", again()));
+        let what = if work.plan.layers.is_empty() { "the picture" } else { "the picture and its layers" };
+        kept.push(format!("`{path}` keeps {of_all} % of {what}; go on with:\n  {}", again()));
     }
     let kept = (!kept.is_empty()).then(|| kept.join("; "));
     if late {

@@ -183,7 +183,9 @@ pub fn words_of(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
     words
 }
 
-/// Cuts tiles into at most `count` pieces of about the same cost, in order. `costs` are those of each picture's tiles.
+/// Cuts tiles into `count` pieces of about the same cost, in order, the last of which are empty where there are fewer to
+/// be made: a scheduler's tasks have numbers of their own, and each finds its piece. `costs` are those of each picture's
+/// tiles.
 pub fn cut(frames: &[Option<u32>], costs: &[&[f64]], count: u32) -> Vec<Piece> {
     let total: f64 = costs.iter().map(|tiles| tiles.iter().sum::<f64>()).sum();
     let mut pieces: Vec<Piece> = Vec::new();
@@ -205,6 +207,7 @@ pub fn cut(frames: &[Option<u32>], costs: &[&[f64]], count: u32) -> Vec<Piece> {
             }
         }
     }
+    pieces.resize_with(count as usize, || Piece { share: 0.0, parts: Vec::new() });
     pieces
 }
 
@@ -229,6 +232,8 @@ mod tests {
             });
             assert_eq!(end, 30);
         }
-        assert_eq!(cut(&[None], &[&[5.0, 1.0]], 100).len(), 2, "no piece is empty");
+        let few = cut(&[None], &[&[5.0, 1.0]], 100);
+        assert_eq!(few.len(), 100);
+        assert_eq!(few.iter().filter(|piece| !piece.parts.is_empty()).count(), 2);
     }
 }

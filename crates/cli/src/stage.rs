@@ -31,9 +31,14 @@ pub struct Stage<'a> {
     typed: &'a RenderArgs,
     messages: Messages,
     animation: Animation,
-    /// The numbers of the groups that move, in the order of the animation.
-    moving: Vec<u32>,
-    scene: Scene,
+    /// The files and numbers of the groups that move, in the order of the animation.
+    moving: Vec<(usize, u32)>,
+    /// The scene, where groups move: each frame has one of its own.
+    scene: Option<Scene>,
+    /// The scene where nothing has moved, until a world is built of it.
+    still: Option<Resolved>,
+    /// Whether what was wrong with textures is told.
+    told: bool,
     sources: Sources,
     disk: TimedDisk,
     /// The scene's camera, where the animation says nothing.
@@ -41,6 +46,7 @@ pub struct Stage<'a> {
     /// What was decoded for the fingerprint and no world has yet.
     textures: Option<Textures>,
     world: Option<World>,
+    extras: Option<Extras>,
     pace: Pace,
 }
 
@@ -95,7 +101,7 @@ pub struct Set<'a> {
     /// Its world.
     pub world: &'a World,
     /// What lies behind and over it.
-    pub extras: Extras,
+    pub extras: &'a Extras,
 }
 
 impl<'a> Stage<'a> {
@@ -108,66 +114,79 @@ impl<'a> Stage<'a> {
     ) -> Result<Self, Failure> {
         let Written { scene, warnings, sources, disk, .. } =
             on_threads(plan.options.threads, || input::read(&plan.input, &typed.reading, messages))??;
-        let outcome = resolve_within(scene.clone(), &limits::resolve_limits(&typed.reading.limits));
+        let groups = if animation.groups.is_empty() { Vec::new() } else { groups_of(&scene, &sources) };
+        let moves = !animation.groups.is_empty();
+        let kept = moves.then(|| scene.clone());
+        let outcome = resolve_within(scene, &limits::resolve_limits(&typed.reading.limits));
         let mut diagnostics = warnings;
         diagnostics.extend(outcome.diagnostics);
         messages.print(&diagnostics, &sources);
-        let resolved = outcome.resolved.ok_or(Failure::Reported)?;
-        let groups = groups_of(&scene, &sources);
-        let moving: Result<Vec<u32>, String> =
-            animation.groups.iter().map(|group| find(&groups, &group.group)).collect();
-        let moving = moving.map_err(Failure::Failed)?;
-        let (camera, pace) = (resolved.camera, Pace::default());
-        let (textures, world) = (None, None);
+        let still = outcome.resolved.ok_or(Failure::Reported)?;
+        let moving = animation.groups.iter().map(|group| find(&groups, &group.group));
+        let moving = moving.collect::<Result<_, String>>().map_err(Failure::Failed)?;
         Ok(Self {
             plan,
             typed,
             messages,
             animation,
             moving,
-            scene,
+            scene: kept,
+            camera: still.camera,
+            still: Some(still),
+            told: false,
             sources,
             disk,
-            camera,
-            textures,
-            world,
-            pace,
+            textures: None,
+            world: None,
+            extras: None,
+            pace: Pace::default(),
         })
     }
 
-    /// The scene of a frame.
-    pub fn resolved(&self, frame: u32) -> Result<Resolved, Failure> {
-        let mut scene = self.scene.clone();
-        for (path, &number) in self.animation.groups.iter().zip(&self.moving) {
-            let main = scene.files.first_mut();
-            if let Some(group) = main.and_then(|file| file.groups.get_mut(number as usize)) {
+    /// The scene of a frame, with what lies behind and over it.
+    fn resolved(&mut self, frame: u32) -> Result<(Resolved, Extras), Failure> {
+        let mut resolved = match &self.scene {
+            Some(scene) => self.moved(scene.clone(), frame)?,
+            // Made once: a world takes it, and after that only the camera moves.
+            None => self.still.take().ok_or(Failure::Reported)?,
+        };
+        resolved.camera = self.camera_of(frame)?;
+        let extras = self.complete(&mut resolved)?;
+        Ok((resolved, extras))
+    }
+
+    /// The scene with its groups where they are at a frame.
+    fn moved(&self, mut scene: Scene, frame: u32) -> Result<Resolved, Failure> {
+        for (path, &(file, number)) in self.animation.groups.iter().zip(&self.moving) {
+            let file = scene.files.get_mut(file);
+            if let Some(group) = file.and_then(|file| file.groups.get_mut(number as usize)) {
                 group.value *= path.at(frame);
             }
         }
         let outcome = resolve_within(scene, &limits::resolve_limits(&self.typed.reading.limits));
-        let Some(mut resolved) = outcome.resolved else {
+        outcome.resolved.ok_or_else(|| {
             self.messages.print(&outcome.diagnostics, &self.sources);
-            return Err(Failure::Failed(format!("frame {frame} cannot be made")));
-        };
-        resolved.camera = self.camera_of(frame)?;
-        if self.typed.missing_texture == MissingTexture::White {
-            // Told once, with the first frame.
-            input::whiten(&mut resolved, &self.disk, self.plan.quiet || self.world.is_some());
-        }
-        Ok(resolved)
+            Failure::Failed(format!("frame {frame} cannot be made"))
+        })
     }
 
-    /// What pictures of the scene depend on, where nothing has moved.
-    pub fn fingerprint(&mut self) -> Result<Fingerprint, Failure> {
-        let outcome = resolve_within(self.scene.clone(), &limits::resolve_limits(&self.typed.reading.limits));
-        let mut resolved = outcome.resolved.ok_or(Failure::Reported)?;
+    /// Puts into a scene what options say of it.
+    fn complete(&mut self, resolved: &mut Resolved) -> Result<Extras, Failure> {
         if self.typed.missing_texture == MissingTexture::White {
-            input::whiten(&mut resolved, &self.disk, true);
+            input::whiten(resolved, &self.disk, self.plan.quiet || self.told);
+            self.told = true;
         }
-        Extras::new(self.plan, &mut resolved, &self.sources)?;
+        Extras::new(self.plan, resolved, &self.sources)
+    }
+
+    /// What pictures of the scene depend on, where nothing has moved. Asked for before the first frame.
+    pub fn fingerprint(&mut self) -> Result<Fingerprint, Failure> {
+        let mut resolved = self.still.take().ok_or(Failure::Reported)?;
+        self.complete(&mut resolved)?;
         let textures = self.load_textures(&resolved)?;
         let fingerprint = Fingerprint::of(&resolved, &textures, &self.plan.options);
         self.textures = Some(textures);
+        self.still = Some(resolved);
         Ok(fingerprint)
     }
 
@@ -189,33 +208,15 @@ impl<'a> Stage<'a> {
     /// Makes a frame ready: another camera costs nothing; where groups move, the accelerator is fitted or built anew.
     pub fn set(&mut self, frame: u32) -> Result<Set<'_>, Failure> {
         let start = Instant::now();
-        let mut resolved = self.resolved(frame)?;
-        let extras = Extras::new(self.plan, &mut resolved, &self.sources)?;
-        let refused = |faults: Vec<_>| {
-            self.messages.print(&faults, &Sources::default());
-            Failure::Reported
-        };
         let world = match self.world.take() {
-            None => {
-                limits::check(
-                    &resolved,
-                    &self.plan.prepare,
-                    Some(&self.plan.options),
-                    &self.typed.reading.limits,
-                )?;
-                let textures = match self.textures.take() {
-                    Some(textures) => textures,
-                    None => self.load_textures(&resolved)?,
-                };
-                World::build(resolved, textures, &self.plan.prepare).map_err(refused)?
-            }
             Some(mut world) if self.moving.is_empty() => {
-                world.set_camera(resolved.camera);
+                world.set_camera(self.camera_of(frame)?);
                 world
             }
-            Some(world) => {
-                let refit = !self.pace.rebuilds();
-                world.moved(resolved, &self.plan.prepare, refit).map_err(refused)?
+            before => {
+                let (resolved, extras) = self.resolved(frame)?;
+                self.extras = Some(extras);
+                self.built(before, resolved)?
             }
         };
         self.pace.prepared(world.seconds());
@@ -223,7 +224,27 @@ impl<'a> Stage<'a> {
             tracing::debug!(frame, stage, seconds, "prepared");
         }
         tracing::debug!(frame, seconds = start.elapsed().as_secs_f64(), "ready");
+        let extras = self.extras.as_ref().ok_or(Failure::Reported)?;
         Ok(Set { world: self.world.insert(world), extras })
+    }
+
+    /// The world of a scene, made of the one before it where there is one.
+    fn built(&mut self, before: Option<World>, resolved: Resolved) -> Result<World, Failure> {
+        let world = if let Some(world) = before {
+            world.moved(resolved, &self.plan.prepare, !self.pace.rebuilds())
+        } else {
+            let limits = &self.typed.reading.limits;
+            limits::check(&resolved, &self.plan.prepare, Some(&self.plan.options), limits)?;
+            let textures = match self.textures.take() {
+                Some(textures) => textures,
+                None => self.load_textures(&resolved)?,
+            };
+            World::build(resolved, textures, &self.plan.prepare)
+        };
+        world.map_err(|faults| {
+            self.messages.print(&faults, &Sources::default());
+            Failure::Reported
+        })
     }
 
     /// What a frame took, for the choice between fitting and building.

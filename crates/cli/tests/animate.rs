@@ -105,6 +105,115 @@ fn fitted_and_built_frames_have_the_same_bytes() {
 }
 
 #[test]
+fn groups_of_included_files_move_wherever_the_file_is_placed() {
+    let folder = folder();
+    let one = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n";
+    let main = ARM.replacen("#shape_sphere 0 0 0 0 .5", "#ray_file_instance 0", 1)
+        + "#ray_file parts/hand.ray\n#group_begin // other hand\n1 0 0 -2 0 1 0 0 0 0 1 0 0 0 0 1\n\
+           #ray_file_instance 0\n#group_end\n";
+    let hand = |shift: &str| {
+        let inner = one.replacen("1 0 0 0", &format!("1 0 0 {shift}"), 1);
+        format!(
+            "#group_begin // palm\n{one}#shape_box -1 0 0 0 .5 .5 .5\n#group_begin // arm\n{inner}\
+                 #ray_file tip.ray\n#ray_file_instance 0\n#group_end\n#group_end\n"
+        )
+    };
+    std::fs::create_dir(folder.path("parts")).expect("a folder");
+    folder.put("main.ray", main.as_bytes());
+    folder.put(
+        "parts/tip.ray",
+        format!("#group_begin\n{one}#shape_sphere -1 0 .6 0 .3\n#group_end\n").as_bytes(),
+    );
+    let moves = |group: &str| {
+        format!(
+            "[[group]]\ngroup = '{group}'\n[[group.key]]\nframe = 0\n\
+                 [[group.key]]\nframe = 4\ntranslate = [1.5, 0, 0]\n[[group.key]]\nframe = 5\nangle = 0\n"
+        )
+    };
+    folder.put("parts/hand.ray", hand("1.5").as_bytes());
+    folder.run("render main.ray by-hand.png --size 80x60").expect(0);
+    folder.put("parts/hand.ray", hand("0").as_bytes());
+    folder.run("render main.ray still.png --size 80x60").expect(0);
+    assert!(folder.get("by-hand.png") != folder.get("still.png"));
+    let line = LINE.replace("arm.ray", "main.ray").replace("0-4", "4-4");
+    for (index, group) in ["parts/hand.ray:arm", "parts/hand.ray:0/0", "tip.ray:0"].into_iter().enumerate() {
+        folder.put("moves.toml", moves(group).as_bytes());
+        folder.run(&line.replace("out", &format!("{index}"))).expect(0);
+        assert!(folder.get(&format!("{index}.004.png")) == folder.get("by-hand.png"), "{group}");
+    }
+    let line = line.replace("out", "more");
+    folder.put("moves.toml", moves("palm").as_bytes());
+    folder.run(&line).expect(0);
+    let line = line.replace("more", "none");
+    folder.put("moves.toml", moves("arm").as_bytes());
+    folder.run(&line).expect(1).says("more than one group is named `arm`: say 0 or parts/hand.ray:0/0");
+    folder.put("moves.toml", moves("tip.ray:1").as_bytes());
+    folder.run(&line).expect(1).says("parts/hand.ray:0/0 (arm), tip.ray:0");
+}
+
+/// Which frames were built, and which fitted.
+fn stages(said: &str) -> Vec<&'static str> {
+    let stage = |line: &str| match line {
+        line if line.contains("stage=\"build\"") => Some("build"),
+        line if line.contains("stage=\"refit\"") => Some("refit"),
+        _other => None,
+    };
+    said.lines().filter_map(stage).collect()
+}
+
+/// Spheres in slabs, each a group, that come apart along y until frame 6: from one place where `distance` is 1.
+fn slabs(folder: &Folder, slabs: usize, spheres: usize, distance: f64) {
+    let mut scene = "#camera 0 0 30 0 0 -1 0 1 0 .4\n#light_dir 1 1 1 -1 -1 -1\n".to_owned();
+    let mut moves = String::new();
+    // A simple generator, so that places look random and are the same on every run.
+    let mut state = 1_u32;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state >> 8) / f64::from(1 << 24)
+    };
+    for slab in 0..slabs {
+        scene.push_str("#group_begin 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
+        let low = slab as f64 / slabs as f64;
+        for _ in 0..spheres {
+            let (x, y, z) =
+                (20.0 * random() - 10.0, 20.0 * (low + random() / slabs as f64) - 10.0, 20.0 * random());
+            scene.push_str(&format!("#shape_sphere -1 {x} {y} {} .15\n", -z));
+        }
+        scene.push_str("#group_end\n");
+        // From where the slab in the middle is.
+        let way = distance * 20.0 * (0.5 - low);
+        moves.push_str(&format!(
+            "[[group]]\ngroup = '{slab}'\n[[group.key]]\nframe = 0\ntranslate = [0, {way}, 0]\n\
+             [[group.key]]\nframe = 6\ntranslate = [0, 0, 0]\n"
+        ));
+    }
+    folder.put("slabs.ray", scene.as_bytes());
+    folder.put("slabs.toml", moves.as_bytes());
+}
+
+#[test]
+fn the_tree_is_fitted_while_that_costs_less_and_built_once_it_costs_more() {
+    // Large scenes and a small picture with little motion; small scenes, large pictures and much motion.
+    for (count, spheres, distance, size, built_again) in
+        [(2, 60_000, 0.01, "48x36", false), (12, 250, 1.0, "400x300", true)]
+    {
+        let folder = Folder::new();
+        slabs(&folder, count, spheres, distance);
+        let line = format!("animate slabs.ray --animation slabs.toml --size {size} --threads 1 --aa none");
+        let said = folder.run(&format!("{line} --frames 0-6 -o a.#.png -v")).expect(0).stderr;
+        let stages = stages(&said);
+        assert_eq!((stages.len(), stages[0]), (7, "build"), "{stages:?}");
+        assert_eq!(stages[1..].contains(&"build"), built_again, "{stages:?}");
+        assert!(stages[1..].contains(&"refit"), "{stages:?}");
+        for frame in [1, 3, 6] {
+            folder.run(&format!("{line} --frames {frame}-{frame} -o b.#.png")).expect(0);
+            let (one, other) = (folder.get(&format!("a.{frame}.png")), folder.get(&format!("b.{frame}.png")));
+            assert!(one == other, "frame {frame} of {count} slabs");
+        }
+    }
+}
+
+#[test]
 fn only_missing_frames_are_made() {
     let folder = folder();
     folder.run(LINE).expect(0);

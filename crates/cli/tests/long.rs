@@ -76,6 +76,44 @@ fn killed_again_and_again_and_resumed_it_makes_the_same_picture() {
     }
 }
 
+/// The last line of an event of these.
+fn event(lines: &str, event: &str) -> Value {
+    let mut lines = lines.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    lines.rfind(|line| line["event"] == event).unwrap_or_else(|| panic!("no event `{event}`"))
+}
+
+#[test]
+fn layers_are_kept_like_the_picture() {
+    for picture in ["a.exr", "a.png"] {
+        let folder = Folder::new();
+        let line =
+            "render balls.ray a.png --size 1000x750 --threads 1 --layers depth,shadow,reflected,boxtests";
+        let line = line.replace("a.png", picture);
+        folder.run(&line.replace("a.", "whole.")).expect(0);
+        let mut child = start(&folder, &format!("{line} --checkpoint c.tiles --every 10ms"));
+        // All of the picture and some bands of the layers.
+        await_file(&folder, "c.tiles", 1000 * 750 * 12 + 500_000);
+        child.kill().and_then(|()| child.wait()).expect("killed");
+        assert!(!folder.names().contains(&picture.to_owned()), "it was not slow");
+        let resume = format!("{line} --checkpoint c.tiles --resume");
+        let refused = folder.run(&resume.replace(",boxtests", "")).expect(1);
+        refused.says("layers: depth,shadow,reflected,boxtests there, depth,shadow,reflected now");
+        // A time limit in the midst of the layers keeps them, too.
+        folder.run(&format!("{resume} --time-limit 1ms")).expect(4).says("% of the picture and its layers");
+        let said = folder.run(&format!("{resume} --progress json")).expect(0).stderr;
+        assert_eq!(event(&said, "picture")["finished_pixels"], 1000 * 750);
+        let layers = event(&said, "layers");
+        assert!(layers["finished_pixels"].as_u64().is_some_and(|kept| kept > 1000), "{layers}");
+        assert!(layers["finished_pixels"].as_u64().is_some_and(|kept| kept < 1000 * 750), "{layers}");
+        let mut made = folder.names();
+        made.retain(|name| name.starts_with("a."));
+        assert_eq!(made.len(), if picture == "a.exr" { 1 } else { 5 });
+        for name in made {
+            assert!(folder.get(&name) == folder.get(&name.replace("a.", "whole.")), "{name}");
+        }
+    }
+}
+
 #[test]
 fn damage_costs_the_damaged_tiles_only() {
     let folder = Folder::new();
@@ -223,38 +261,137 @@ fn the_picture_so_far_is_always_a_picture() {
     folder.run("render balls.ray - --partial-every 1s").expect(2).says("name a file");
 }
 
+/// A row of the page's table of keys: the key, its events, its type.
+type Field = (String, Vec<String>, String);
+
+/// What stands between backticks.
+fn quoted(text: &str) -> Vec<String> {
+    text.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+/// The events and the keys that docs/progress.md describes.
+fn described() -> (Vec<String>, Vec<Field>) {
+    let page = std::fs::read_to_string(common::root().join("docs/progress.md")).expect("the page");
+    assert!(page.contains("This page describes schema 1,"));
+    let rows = |columns: usize| {
+        let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+        let rows = page.lines().filter(|line| line.starts_with("| `")).map(cells);
+        rows.filter(|cells| cells.len() == columns + 2).collect::<Vec<_>>()
+    };
+    let events: Vec<String> = rows(2).iter().flat_map(|row| quoted(&row[1])).collect();
+    let field = |row: &Vec<String>| {
+        let of = if row[2] == "all" { events.clone() } else { quoted(&row[2]) };
+        quoted(&row[1]).into_iter().map(move |key| (key, of.clone(), row[3].clone())).collect::<Vec<_>>()
+    };
+    let fields = rows(4).iter().flat_map(field).collect();
+    (events, fields)
+}
+
+fn is_of_type(value: &Value, described: &str) -> bool {
+    match described {
+        "whole number" => value.is_u64(),
+        "number" => value.is_number(),
+        "number or null" => value.is_number() || value.is_null(),
+        "text" => value.is_string(),
+        other => value.as_str().is_some_and(|value| {
+            other.strip_prefix("text: ").is_some_and(|words| quoted(words).contains(&value.to_owned()))
+        }),
+    }
+}
+
+/// Fails unless the line is what the page says: an event of the page with all of its keys and no others.
+fn validate(line: &Value, (events, fields): &(Vec<String>, Vec<Field>)) {
+    let event = line["event"].as_str().expect("an event").to_owned();
+    assert!(events.contains(&event), "no such event on the page: {line}");
+    let described: Vec<&Field> = fields.iter().filter(|(_, of, _)| of.contains(&event)).collect();
+    for (key, _, kind) in &described {
+        let value = line.get(key).unwrap_or_else(|| panic!("no `{key}` in {line}"));
+        assert!(is_of_type(value, kind), "`{key}` is no {kind} in {line}");
+    }
+    for key in line.as_object().expect("an object").keys() {
+        assert!(described.iter().any(|(name, ..)| name == key), "`{key}` is not on the page: {line}");
+    }
+}
+
+/// The lines that a program writes, each of which is as the page says.
+fn events_of(said: &str) -> Vec<Value> {
+    let page = described();
+    let lines = said.lines().filter(|line| line.starts_with('{'));
+    let lines: Vec<Value> =
+        lines.map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}"))).collect();
+    lines.iter().for_each(|line| validate(line, &page));
+    lines
+}
+
 #[test]
 fn progress_is_json_as_its_page_says() {
     let folder = Folder::new();
     let ended = folder
-        .run(&format!("{SLOW} --progress json --partial-every 100ms --checkpoint c.tiles --every 50ms"))
+        .run(&format!(
+            "{SLOW} --progress json --partial-every 100ms --checkpoint c.tiles --every 50ms --layers st"
+        ))
         .expect(0);
-    let lines: Vec<Value> = ended
-        .stderr
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}")))
-        .collect();
-    let page = std::fs::read_to_string(common::root().join("docs/progress.md")).expect("the page");
+    assert_eq!(ended.stderr.lines().count(), events_of(&ended.stderr).len(), "nothing but events");
+    let lines = events_of(&ended.stderr);
     let events: Vec<&str> = lines.iter().map(|line| line["event"].as_str().expect("an event")).collect();
     assert_eq!((events[0], events[1], *events.last().unwrap()), ("start", "picture", "end"));
-    for event in ["progress", "saved"] {
+    for event in ["progress", "saved", "layers"] {
         assert!(events.contains(&event), "{event}: {events:?}");
     }
-    for line in &lines {
-        for key in line.as_object().expect("an object").keys() {
-            assert!(page.contains(&format!("`{key}`")), "{key} is not on the page");
-        }
-        assert!(page.contains(&format!("`{}`", line["event"].as_str().unwrap())), "{line}");
+    assert_eq!(lines[0]["schema"], 1);
+    let layers = events.iter().position(|event| *event == "layers").expect("layers");
+    for part in [&lines[..layers], &lines[layers..]] {
+        let of = part.iter().filter(|line| line["event"] == "progress");
+        let finished: Vec<u64> = of.map(|line| line["finished_pixels"].as_u64().unwrap()).collect();
+        assert!(finished.is_sorted(), "{finished:?}");
+        assert_eq!(finished.last(), Some(&(480 * 360)));
     }
-    let of = |event: &'static str| lines.iter().filter(move |line| line["event"] == event);
-    let finished: Vec<u64> = of("progress").map(|line| line["finished_pixels"].as_u64().unwrap()).collect();
-    assert!(finished.is_sorted(), "{finished:?}");
-    assert_eq!(finished.last(), Some(&(480 * 360)));
     let seconds: Vec<f64> = lines.iter().map(|line| line["seconds"].as_f64().unwrap()).collect();
     assert!(seconds.is_sorted());
-    assert_eq!(of("end").next().unwrap()["outcome"], "done");
-    let failed = folder.run("render wrong.ray a.png --progress json").expect(1);
-    assert!(failed.stderr.trim_end().ends_with('}') && failed.stderr.contains("\"outcome\":\"failed\""));
+    assert_eq!(event(&ended.stderr, "end")["outcome"], "done");
+    let kinds = |lines: &[Value]| -> Vec<String> {
+        lines.iter().filter_map(|line| Some(line["kind"].as_str()?.to_owned())).collect()
+    };
+    assert!(
+        kinds(&lines).contains(&"checkpoint".to_owned()) && kinds(&lines).contains(&"partial".to_owned())
+    );
+    let failed = folder.run("render wrong.ray a.png --progress json").expect(1).stderr;
+    assert_eq!(events_of(&failed).last().expect("an event")["outcome"], "failed");
+    let late = folder.run(&format!("{SLOW} --progress json --time-limit 100ms")).expect(4).stderr;
+    assert_eq!(events_of(&late).last().expect("an event")["outcome"], "time-limit");
+    // The other two commands.
+    folder.put("turn.toml", b"[camera.turntable]\nframes = 9\n");
+    let frames = "balls.ray --animation turn.toml --frames 1-2 --size 40x30";
+    let said = folder.run(&format!("animate {frames} -o out.#.png --progress json")).expect(0).stderr;
+    let lines = events_of(&said);
+    assert_eq!(lines.iter().filter(|line| line["event"] == "frame").count(), 2);
+    assert_eq!(kinds(&lines), ["frame", "frame"]);
+    folder.run(&format!("plan {frames} -o a.plan --pieces 1")).expect(0);
+    let said = folder.run("work a.plan --piece 0 -o pieces --progress json").expect(0).stderr;
+    assert_eq!(kinds(&events_of(&said)), ["piece", "piece"]);
+}
+
+#[test]
+fn what_the_page_does_not_say_is_found() {
+    let page = described();
+    assert!(page.0.len() == 7 && page.1.len() > 15, "{page:?}");
+    let fine = serde_json::json!({ "event": "end", "seconds": 0.5, "outcome": "done", "exit": 0 });
+    validate(&fine, &page);
+    for (key, value) in [
+        ("exit", Some(serde_json::json!("0"))),
+        ("exit", None),
+        ("outcome", Some(serde_json::json!("well"))),
+        ("more", Some(serde_json::json!(1))),
+        ("event", Some(serde_json::json!("fin"))),
+    ] {
+        let mut wrong = fine.clone();
+        match value {
+            Some(value) => wrong[key] = value,
+            None => drop(wrong.as_object_mut().expect("an object").remove(key)),
+        }
+        let found = std::panic::catch_unwind(|| validate(&wrong, &page));
+        assert!(found.is_err(), "{wrong}");
+    }
 }
 
 #[test]

@@ -8,6 +8,8 @@ use common::Folder;
 use serde_json::Value;
 use std::process::Command;
 use std::process::Stdio;
+use yaml_rust2::Yaml;
+use yaml_rust2::YamlLoader;
 
 const OPTIONS: &str = "--size 200x150 --aa adaptive --tile-size 16 --recursion 4";
 
@@ -160,38 +162,119 @@ fn recipe(folder: &Folder, script: &str) -> std::process::Output {
     command.args(["-ec", script]).current_dir(folder.path("")).env("PATH", path).output().expect("a shell")
 }
 
+/// The page, and its blocks of a language.
+fn page() -> String {
+    std::fs::read_to_string(common::root().join("docs/machines.md")).expect("the page")
+}
+
+fn blocks(language: &str) -> Vec<String> {
+    let mark = format!("```{language}\n");
+    let page = page();
+    page.split(&mark).skip(1).filter_map(|block| Some(block.split("```").next()?.to_owned())).collect()
+}
+
+/// A folder with a plan of 16 pieces as the recipes name it, and the picture made in one go.
+fn planned() -> Folder {
+    let folder = Folder::new();
+    folder.run(&format!("render balls.ray whole.png {OPTIONS}")).expect(0);
+    folder.run(&format!("plan balls.ray -o room.plan --pieces 16 {OPTIONS}")).expect(0);
+    folder
+}
+
+fn merged(folder: &Folder) {
+    folder.run("merge room.plan pieces -o merged.png").expect(0);
+    assert!(folder.get("merged.png") == folder.get("whole.png"));
+}
+
 #[test]
-fn the_recipes_of_schedulers_give_each_piece_its_number() {
-    // What each scheduler puts into the environment, or into the line, for its tasks.
-    for (variable, line) in [
-        ("SLURM_ARRAY_TASK_ID", "dotray work a.plan --piece \"$SLURM_ARRAY_TASK_ID\" -o pieces"),
-        ("JOB_COMPLETION_INDEX", "dotray work a.plan --piece \"$JOB_COMPLETION_INDEX\" -o pieces"),
-        ("CUE_IFRAME", "dotray work a.plan --piece \"$CUE_IFRAME\" -o pieces"),
-    ] {
-        let page = std::fs::read_to_string(common::root().join("docs/machines.md")).expect("the page");
-        assert!(page.contains(variable), "{variable} is not on the page");
-        let folder = Folder::new();
-        folder.run(&format!("plan balls.ray -o a.plan --pieces 3 {OPTIONS}")).expect(0);
-        for n in 0..3 {
-            let ended = recipe(&folder, &format!("export {variable}={n}; {line}"));
-            assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+fn the_job_of_kubernetes_makes_every_piece() {
+    let yaml = blocks("yaml").pop().expect("a Job");
+    let job = &YamlLoader::load_from_str(&yaml).expect("YAML")[0];
+    assert_eq!((job["apiVersion"].as_str(), job["kind"].as_str()), (Some("batch/v1"), Some("Job")));
+    let spec = &job["spec"];
+    assert_eq!(spec["completionMode"].as_str(), Some("Indexed"));
+    let completions = spec["completions"].as_i64().expect("a number");
+    let pod = &spec["template"]["spec"];
+    let container = &pod["containers"][0];
+    let folder = planned();
+    assert_eq!(completions as usize, count(&folder, "room.plan"));
+    // The folder that the container works in is that of the volume that all pods share.
+    let mount = &container["volumeMounts"][0];
+    assert_eq!(mount["mountPath"].as_str(), container["workingDir"].as_str());
+    assert_eq!(mount["name"].as_str(), pod["volumes"][0]["name"].as_str());
+    let words: Vec<&str> =
+        container["command"].as_vec().expect("a list").iter().flat_map(Yaml::as_str).collect();
+    let mut failures = spec["backoffLimit"].as_i64().expect("a number");
+    for index in 0..completions {
+        // The kubelet puts variables of the container in place of $(NAME), and starts the command without a shell.
+        let pod = || {
+            let mut words =
+                words.iter().map(|word| word.replace("$(JOB_COMPLETION_INDEX)", &index.to_string()));
+            let mut command = program(&words.next().expect("a program"));
+            command.args(words).current_dir(folder.path("")).env("JOB_COMPLETION_INDEX", index.to_string());
+            command
+        };
+        if index % 5 == 1 && failures > 0 {
+            // A node that goes takes its pod with it; the Job starts another one for the index.
+            let mut child = pod().stderr(Stdio::null()).spawn().expect("it starts");
+            child.kill().and_then(|()| child.wait()).expect("killed");
+            failures -= 1;
         }
-        folder.run("merge a.plan pieces -o merged.png").expect(0);
+        let ended = pod().output().expect("it runs");
+        assert!(ended.status.success(), "{index}: {}", String::from_utf8_lossy(&ended.stderr));
     }
+    merged(&folder);
+}
+
+/// The program that a recipe names.
+fn program(name: &str) -> Command {
+    assert_eq!(name, "dotray");
+    Command::new(env!("CARGO_BIN_EXE_dotray"))
+}
+
+#[test]
+fn both_ways_of_opencue_make_every_piece() {
+    // By the variable of the environment.
+    let line = blocks("sh").into_iter().find(|block| block.contains("CUE_IFRAME")).expect("a recipe");
+    let folder = planned();
+    for frame in 0..16 {
+        let ended = recipe(&folder, &format!("export CUE_IFRAME={frame} CUE_FRAME={frame:04}\n{line}"));
+        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    }
+    merged(&folder);
+    // By the outline: a list of words, in which `#IFRAME#` stands for the frame, and a range.
+    let page = page();
+    let outline = page.split("Shell(\"work\", command=").nth(1).expect("an outline");
+    let (command, rest) = outline.split_once("], ").expect("a list");
+    let words: Vec<String> = serde_json::from_str(&format!("{command}]")).expect("words");
+    let range = rest.strip_prefix("range=\"").and_then(|rest| rest.split('"').next()).expect("a range");
+    let (first, last) = range.split_once('-').expect("a range");
+    let folder = planned();
+    for frame in first.parse::<u32>().expect("a number")..=last.parse().expect("a number") {
+        let mut words = words.iter().map(|word| word.replace("#IFRAME#", &frame.to_string()));
+        let mut command = program(&words.next().expect("a program"));
+        assert!(command.args(words).current_dir(folder.path("")).output().expect("it runs").status.success());
+    }
+    merged(&folder);
+}
+
+fn has_parallel() -> bool {
+    let found = Command::new("parallel").arg("--version").output();
+    let found = found.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("GNU"));
+    if !found {
+        println!("skipped, no GNU parallel");
+    }
+    found
 }
 
 #[test]
 fn gnu_parallel_runs_its_recipe() {
-    let found = Command::new("parallel").arg("--version").output();
-    if !found.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("GNU")) {
-        println!("skipped, no GNU parallel");
+    if !has_parallel() {
         return;
     }
     let folder = Folder::new();
     folder.run(&format!("render balls.ray whole.png {OPTIONS}")).expect(0);
-    let page = std::fs::read_to_string(common::root().join("docs/machines.md")).expect("the page");
-    let recipes: Vec<&str> =
-        page.split("```sh\n").skip(1).filter_map(|block| block.split("```").next()).collect();
+    let recipes = blocks("sh");
     let local = recipes.iter().find(|block| block.contains("parallel") && !block.contains("--sshlogin"));
     let script = local
         .expect("a recipe")
@@ -201,6 +284,78 @@ fn gnu_parallel_runs_its_recipe() {
     let ended = recipe(&folder, &script);
     assert!(ended.status.success(), "{script}\n{}", String::from_utf8_lossy(&ended.stderr));
     assert!(folder.get("room.png") == folder.get("whole.png"));
+}
+
+/// A server for ssh of our own, on a port of its own, that lets in who has the key; ends with the test.
+struct Ssh(std::process::Child);
+
+impl Drop for Ssh {
+    fn drop(&mut self) {
+        let _ = self.0.kill().and_then(|()| self.0.wait());
+    }
+}
+
+/// A server, and the file that makes `red` and `blue` this machine.
+fn ssh(folder: &Folder) -> Option<(Ssh, std::path::PathBuf)> {
+    let keygen = |name: &str| {
+        let mut command = Command::new("ssh-keygen");
+        command.args(["-q", "-t", "ed25519", "-N", "", "-f"]).arg(folder.path(name)).status()
+    };
+    let daemon =
+        ["/usr/sbin/sshd", "/usr/bin/sshd"].into_iter().find(|path| std::path::Path::new(path).exists())?;
+    if !keygen("host").ok()?.success() || !keygen("key").ok()?.success() {
+        return None;
+    }
+    // Only root may need this folder, and only where nothing else has made it.
+    let _ = std::fs::create_dir_all("/run/sshd");
+    let probe = std::net::TcpListener::bind("127.0.0.1:0").ok()?;
+    let port = probe.local_addr().ok()?.port();
+    drop(probe);
+    let at = |name: &str| folder.path(name).display().to_string();
+    let bin = std::path::Path::new(env!("CARGO_BIN_EXE_dotray")).parent()?.display().to_string();
+    let path = std::env::var("PATH").unwrap_or_default();
+    let server = format!(
+        "Port {port}\nListenAddress 127.0.0.1\nHostKey {}\nAuthorizedKeysFile {}\nStrictModes no\nUsePAM no\n\
+         PasswordAuthentication no\nPermitRootLogin yes\nPidFile none\nSetEnv PATH={bin}:{path}\n",
+        at("host"),
+        at("key.pub")
+    );
+    folder.put("sshd.conf", server.as_bytes());
+    let client = format!(
+        "Host red blue\n HostName 127.0.0.1\n Port {port}\n IdentityFile {}\n IdentitiesOnly yes\n\
+         \x20StrictHostKeyChecking no\n UserKnownHostsFile /dev/null\n LogLevel ERROR\n",
+        at("key")
+    );
+    folder.put("ssh.conf", client.as_bytes());
+    let mut command = Command::new(daemon);
+    command.args(["-D", "-e", "-f"]).arg(folder.path("sshd.conf")).stderr(Stdio::null());
+    let server = Ssh(command.spawn().ok()?);
+    for _ in 0..100 {
+        let mut probe = Command::new("ssh");
+        probe.arg("-F").arg(folder.path("ssh.conf")).args(["red", "dotray --version"]);
+        if probe.output().ok()?.status.success() {
+            return Some((server, folder.path("ssh.conf")));
+        }
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    }
+    None
+}
+
+#[test]
+fn gnu_parallel_runs_its_recipe_over_ssh() {
+    if !has_parallel() {
+        return;
+    }
+    let folder = planned();
+    let Some((_server, config)) = ssh(&folder) else {
+        println!("skipped, no server for ssh, or nobody may log in by it");
+        return;
+    };
+    let script = blocks("sh").into_iter().find(|block| block.contains("--sshlogin")).expect("a recipe");
+    let script = format!("export PARALLEL_SSH='ssh -F {}'\n{script}", config.display());
+    let ended = recipe(&folder, &script);
+    assert!(ended.status.success(), "{script}\n{}", String::from_utf8_lossy(&ended.stderr));
+    merged(&folder);
 }
 
 #[test]

@@ -57,32 +57,45 @@ until sinfo -h -t idle | grep -q "$host"; do
     sleep 1
 done
 
-dotray render room.ray whole.png --size 200x150
-dotray plan room.ray -o room.plan --pieces 16 --size 200x150 --quiet
+size='--size 640x480 --aa grid=5'
+dotray render room.ray whole.png $size
+dotray plan room.ray -o room.plan --pieces 16 $size --quiet
 # The page's script, on one core a task: there may be no more.
 awk '/^## Slurm/ { found = 1 } found && /^```sh/ { inside = 1; next } inside && /^```/ { exit } inside' "$page" |
     sed 's/--threads 4/--threads 1/; s/cpus-per-task=4/cpus-per-task=1/' > job.sh
 grep -q SLURM_ARRAY_TASK_ID job.sh
 job=$(sbatch --parsable job.sh)
-sleep 1
 # A task that is stopped in its midst and started again makes the same piece.
-scontrol requeue "${job}_0" 2>/dev/null || true
+waited=0
+until squeue -h -r -j "${job}_0" -t running -o %i | grep -q .; do
+    waited=$((waited + 1))
+    [ "$waited" -lt 600 ] || { squeue; cat ./*.log; exit 1; }
+    sleep 0.1
+done
+scontrol requeue "${job}_0"
 finish() {
     waited=0
     while [ -n "$(squeue -h)" ]; do
         waited=$((waited + 1))
         [ "$waited" -lt 120 ] || { squeue; cat slurm-*.out; exit 1; }
+        # Slurm holds a task that was requeued back for two minutes.
+        for held in $(squeue -h -r -t pending -o '%i %r' | sed -n 's/ BeginTime$//p'); do
+            scontrol update "JobId=$held" StartTime=now || true
+        done
         sleep 1
     done
 }
 finish
-# As the page says: a busy machine may cost tasks, and the merge tells which ones to run again.
-attempt=0
-until dotray merge room.plan pieces -o room.png 2>said; do
-    attempt=$((attempt + 1))
-    [ "$attempt" -lt 4 ] || { cat said slurm-*.out; exit 1; }
-    missing=$(sed -n 's/.*not whole: \([0-9, -]*\).*/\1/p' said | tr -d ' ')
-    sbatch --array="$missing" job.sh >/dev/null
-    finish
-done
+scontrol show job "${job}_0" | grep -q 'Restarts=1' || { echo "the task was not started again"; exit 1; }
+dotray merge room.plan pieces -o room.png || { cat slurm-*.out; exit 1; }
+cmp room.png whole.png
+# As the page says: the merge tells which numbers to give to --array.
+rm room.png pieces/piece-00004.tiles pieces/piece-00005.tiles pieces/piece-00009.tiles
+if dotray merge room.plan pieces -o room.png 2>said; then exit 1; fi
+missing=$(sed -n 's/.*not whole: \([0-9, -]*\).*/\1/p' said | tr -d ' ')
+[ "$missing" = 4-5,9 ]
+job=$(sbatch --parsable --array="$missing" job.sh)
+# The second job of the page.
+sbatch --dependency="afterok:$job" --wrap "dotray merge room.plan pieces -o room.png" >/dev/null
+finish
 cmp room.png whole.png

@@ -7,6 +7,10 @@ mod common;
 
 use common::Folder;
 use common::Outcome;
+use dotray::image::Limits;
+use dotray::image::decode;
+use std::path::Path;
+use std::path::PathBuf;
 use std::process::Child;
 use std::process::Command;
 use std::process::Stdio;
@@ -95,6 +99,85 @@ fn a_file_size_limit_is_told_like_a_full_disk() {
     assert!(made.stderr.contains("File too large"), "{}", made.stderr);
 }
 
+/// Four frames of a second each.
+const FRAMES: &str =
+    "animate balls.ray --animation turn.toml --frames 1-4 --size 320x240 --aa grid=5 --threads 1";
+
+#[test]
+fn frames_and_pieces_outlive_a_full_disk() {
+    let folder = Folder::new();
+    folder.put("turn.toml", b"[camera.turntable]\nframes = 9\n");
+    folder.run(&format!("{FRAMES} -o whole.#.png")).expect(0);
+    let frames = || (1..5).map(|n| folder.get(&format!("whole.{n}.png"))).collect::<Vec<_>>();
+    // Room for two frames and a half.
+    let room = frames()[..3].iter().map(|frame| frame.len() as u64).sum::<u64>() * 5 / 6 / 4096 * 4096;
+    std::fs::create_dir(folder.path("small")).expect("a folder");
+    let script = format!(
+        "mount -t tmpfs -o size={room} tmpfs small && $DOTRAY {FRAMES} -o small/out.#.png; echo \"code $?\" >&2; \
+         cp -r small full; mount -o remount,size=9M small; $DOTRAY {FRAMES} -o small/out.#.png && cp -r small enough"
+    );
+    let Some(ended) = with_mounts(&folder, &script) else { return };
+    let ended = ended.expect(0).says("No space left on device").says("code 1");
+    let ended = ended.says("of 4 frames are there, and the same command goes on");
+    let there = |name: &str| (1..5).filter(|n| folder.path(&format!("{name}/out.{n}.png")).exists()).count();
+    assert!((1..4).contains(&there("full")), "{}", ended.stderr);
+    for n in 1..5 {
+        let whole = &frames()[n - 1];
+        if let Ok(frame) = std::fs::read(folder.path(&format!("full/out.{n}.png"))) {
+            assert!(frame == *whole, "frame {n} on the full disk");
+        }
+        assert!(folder.get(&format!("enough/out.{n}.png")) == *whole, "frame {n}");
+    }
+    assert_eq!(
+        std::fs::read_dir(folder.path("full")).expect("a folder").count(),
+        there("full"),
+        "nothing half"
+    );
+    // A piece is whole or absent, and so is what is merged.
+    folder
+        .run(&format!("{} --pieces 2 -o a.plan", SLOW.replace("render", "plan").replace(" a.png", "")))
+        .expect(0);
+    let script = "mount -t tmpfs -o size=100k tmpfs small && $DOTRAY work a.plan --piece 0 -o small; \
+                  echo \"code $?\" >&2; ls -A small";
+    let ended = with_mounts(&folder, script).expect("as before").expect(0);
+    assert_eq!(ended.text(), "");
+    ended.says("piece-00000.tiles").says("No space left on device").says("code 1");
+}
+
+#[test]
+fn a_folder_that_turns_read_only_keeps_what_is_in_it() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("dry")).expect("a folder");
+    folder.run(&SLOW.replace("a.png", "whole.png")).expect(0);
+    // As long as a file is open for writing, it cannot turn: so it is tried until it does.
+    let turns =
+        "until mount -o remount,ro dry 2>/dev/null; do sleep 0.01; done; wait $!; echo \"code $?\" >&2";
+    let line = format!("{} --partial-every 30ms --checkpoint c.tiles", SLOW.replace("a.png", "dry/a.png"));
+    let script = format!(
+        "mount -t tmpfs tmpfs dry && {{ $DOTRAY {line} & until [ -s dry/a.png ]; do sleep 0.01; done; {turns}; \
+         cp dry/a.png part.png; }}"
+    );
+    let Some(ended) = with_mounts(&folder, &script) else { return };
+    let ended = ended.expect(0).says("code 1").says("Read-only file system").says("the picture goes on");
+    let ended = ended.says("keeps all tiles").says("the picture is in");
+    let rescued = ended.stderr.split("the picture is in `").nth(1).and_then(|rest| rest.split('`').next());
+    assert!(std::fs::read(rescued.expect("a path")).expect("a file") == folder.get("whole.png"));
+    decode(&folder.get("part.png"), None, &Limits::default()).expect("what was there is whole");
+    folder.run(&format!("{SLOW} --checkpoint c.tiles --resume --time-limit 100ms")).expect(0);
+    assert!(folder.get("a.png") == folder.get("whole.png"), "not one tile was made again");
+    // Frames.
+    folder.put("turn.toml", b"[camera.turntable]\nframes = 9\n");
+    let script = format!(
+        "mount -t tmpfs tmpfs dry && {{ $DOTRAY {FRAMES} -o dry/out.#.png & \
+         until [ -s dry/out.1.png ]; do sleep 0.01; done; {turns}; cp dry/* .; }}"
+    );
+    let ended = with_mounts(&folder, &script).expect("as before").expect(0).says("Read-only file system");
+    ended.says("code 1").says("of 4 frames are there, and the same command goes on");
+    let first = folder.get("out.1.png");
+    folder.run(&format!("{FRAMES} -o out.#.png")).expect(0).says("of 4 frames are there already");
+    assert!(folder.get("out.1.png") == first && folder.names().contains(&"out.4.png".to_owned()));
+}
+
 #[test]
 fn a_read_only_folder_is_told_before_the_work() {
     let folder = Folder::new();
@@ -152,6 +235,67 @@ fn a_texture_that_is_gone_is_told_by_name() {
 }
 
 #[test]
+fn scene_and_textures_may_vanish_once_they_are_read() {
+    let folder = Folder::new();
+    let text = common::BALLS.replace(" 0 1 -1 !!", " 0 1 0 !!") + "#texture t.ppm\n#ray_file part.ray\n";
+    folder.put(
+        "balls.ray",
+        (text
+            + "#group_begin // all\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n\
+        #ray_file_instance 0\n#group_end\n")
+            .as_bytes(),
+    );
+    folder.put("part.ray", b"#shape_box -1 -1 1 -1 .5 .5 .5\n");
+    folder.put("t.ppm", b"P3 2 1 255 255 0 0 0 0 255");
+    folder.put("turn.toml", b"[[group]]\ngroup = 'all'\n[group.turntable]\nframes = 9\n");
+    let files = ["balls.ray", "part.ray", "t.ppm", "turn.toml"];
+    let contents = files.map(|name| folder.get(name));
+    let vanish = || files.iter().for_each(|name| std::fs::remove_file(folder.path(name)).expect("removed"));
+    folder.run(&SLOW.replace("a.png", "whole.png")).expect(0);
+    let child = start(&folder, &format!("{SLOW} --checkpoint c.tiles --every 20ms"));
+    await_file(&folder, "c.tiles", 30_000);
+    vanish();
+    ended(child).expect(0);
+    assert!(folder.get("a.png") == folder.get("whole.png"));
+    // Without its scene, nothing goes on, and the checkpoint is left alone.
+    folder.put("c.tiles", b"some");
+    folder
+        .run(&format!("{SLOW} --checkpoint c.tiles --resume"))
+        .expect(1)
+        .says("balls.ray")
+        .says("No such file");
+    assert_eq!(folder.get("c.tiles"), b"some");
+    for (name, content) in files.iter().zip(&contents) {
+        folder.put(name, content);
+    }
+    folder.run(&format!("{FRAMES} -o whole.#.png")).expect(0);
+    folder.run(&format!("{FRAMES} -o a.plan --pieces 2").replace("animate", "plan")).expect(0);
+    let child = start(&folder, &format!("{FRAMES} -o out.#.png"));
+    await_file(&folder, "out.1.png", 1);
+    vanish();
+    ended(child).expect(0);
+    for n in 1..5 {
+        assert!(folder.get(&format!("out.{n}.png")) == folder.get(&format!("whole.{n}.png")), "frame {n}");
+    }
+    folder.run("work a.plan --piece 0 -o pieces").expect(1).says("turn.toml").says("No such file");
+}
+
+#[test]
+fn a_folder_of_pieces_that_vanishes_comes_back() {
+    let folder = Folder::new();
+    folder
+        .run(&format!("{} --pieces 1 -o a.plan", SLOW.replace("render", "plan").replace(" a.png", "")))
+        .expect(0);
+    let child = start(&folder, "work a.plan --piece 0 -o pieces --threads 1");
+    let begun = Instant::now();
+    while std::fs::remove_dir(folder.path("pieces")).is_err() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no folder");
+    }
+    ended(child).expect(0);
+    assert!(folder.path("pieces/piece-00000.tiles").exists());
+}
+
+#[test]
 fn clocks_may_jump() {
     let Ok(found) = Command::new("faketime").arg("--version").output() else {
         println!("skipped, no program `faketime`");
@@ -173,6 +317,113 @@ fn clocks_may_jump() {
 }
 
 #[test]
+fn a_clock_that_jumps_in_the_midst_changes_nothing() {
+    let library = Command::new("faketime").args(["-f", "+0", "sh", "-c", "echo $LD_PRELOAD"]).output();
+    let library =
+        library.map(|found| String::from_utf8_lossy(&found.stdout).trim().to_owned()).unwrap_or_default();
+    if library.is_empty() {
+        println!("skipped, no program `faketime`");
+        return;
+    }
+    let folder = Folder::new();
+    folder.run(&SLOW.replace("a.png", "whole.png")).expect(0);
+    folder.put("clock", b"+0d");
+    let mut command = folder.command(&format!(
+        "{SLOW} --checkpoint c.tiles --every 50ms --partial-every 70ms --time-limit 1h --progress json"
+    ));
+    command.env("LD_PRELOAD", library).env("FAKETIME_TIMESTAMP_FILE", folder.path("clock"));
+    command.envs([
+        ("FAKETIME_NO_CACHE", "1"),
+        ("DONT_FAKE_MONOTONIC", "1"),
+        ("FAKETIME_DONT_FAKE_MONOTONIC", "1"),
+    ]);
+    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    for clock in ["+9y", "-9y", "+1d"] {
+        await_file(&folder, "c.tiles", 1);
+        let length = std::fs::metadata(folder.path("c.tiles")).map_or(0, |meta| meta.len());
+        folder.put("clock", clock.as_bytes());
+        // Tiles are kept all the same.
+        await_file(&folder, "c.tiles", length + 1);
+    }
+    let made = ended(child.expect("it starts")).expect(0).says("\"outcome\":\"done\"");
+    assert!(folder.get("a.png") == folder.get("whole.png"));
+    let seconds = |line: &str| serde_json::from_str::<serde_json::Value>(line).ok()?["seconds"].as_f64();
+    let seconds: Vec<f64> = made.stderr.lines().filter_map(seconds).collect();
+    assert!(seconds.is_sorted() && seconds.last().is_some_and(|&last| last < 100.0), "{seconds:?}");
+}
+
+/// A group with little memory, which goes with the test.
+struct Group(PathBuf);
+
+impl Drop for Group {
+    fn drop(&mut self) {
+        // One that somebody is still in stays.
+        let _ = std::fs::remove_dir(&self.0);
+    }
+}
+
+/// A group with so much memory, and a command that puts a shell into it; `None` where this machine lets nobody make
+/// one.
+fn group(bytes: u64) -> Option<(String, Group)> {
+    let groups = std::fs::read_to_string("/proc/self/cgroup").ok()?;
+    let own = |mark: &str| {
+        Some(groups.lines().find_map(|line| line.split_once(mark))?.1.trim_matches('/').to_owned())
+    };
+    let name = format!("dotray-test-{}-{bytes}", std::process::id());
+    let mut places = vec![("/sys/fs/cgroup/memory".to_owned(), "memory.limit_in_bytes")];
+    if let Some(own) = own("0::") {
+        places.push((format!("/sys/fs/cgroup/{own}"), "memory.max"));
+        places.push(("/sys/fs/cgroup".to_owned(), "memory.max"));
+    }
+    for (folder, limit) in places {
+        let group = Path::new(&folder).join(&name);
+        if std::fs::create_dir(&group).is_ok() {
+            if std::fs::write(group.join(limit), bytes.to_string()).is_ok() {
+                // Without room to swap, where there is such a limit.
+                for swap in ["memory.swap.max", "memory.swappiness"] {
+                    let _ = std::fs::write(group.join(swap), "0");
+                }
+                return Some((format!("echo $$ > {}/cgroup.procs", group.display()), Group(group)));
+            }
+            let _ = std::fs::remove_dir(&group);
+        }
+    }
+    None
+}
+
+#[test]
+fn who_is_killed_for_memory_loses_no_tile() {
+    let Some((enter, _group)) = group(160 << 20) else {
+        println!("skipped, this machine allows no groups with a limit of memory");
+        return;
+    };
+    let folder = Folder::new();
+    let line =
+        "render balls.ray a.png --size 3000x3000 --threads 1 --checkpoint c.tiles --every 50ms --resume";
+    folder.run(&line.replace("a.png", "whole.png").replace("c.tiles", "other.tiles")).expect(0);
+    // What the group allows is known before the work.
+    let refused = shell(&folder, &format!("{enter}; exec $DOTRAY {line}")).expect(1);
+    refused.says("of memory").says("the limit is 160 MiB").says("--max-memory");
+    // Who asks for it all the same has just enough, until somebody else in the group wants some: then the system ends
+    // it in the midst of the work, without a word.
+    let mut command = Command::new("sh");
+    let script =
+        format!("{enter}; echo 1000 > /proc/self/oom_score_adj; exec $DOTRAY {line} --max-memory 1G");
+    command.args(["-c", &script]).current_dir(folder.path("")).env("DOTRAY", env!("CARGO_BIN_EXE_dotray"));
+    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    await_file(&folder, "c.tiles", 5_000_000);
+    shell(&folder, &format!("{enter}; head -c 100M /dev/zero | tail -c 100M > /dev/null"));
+    let killed = ended(child.expect("it starts"));
+    assert_eq!(killed.code, None, "it was not killed: {}", killed.stderr);
+    assert!(!folder.names().contains(&"a.png".to_owned()));
+    let resumed = folder.run(&format!("{line} --progress json")).expect(0).stderr;
+    let kept = resumed.lines().find(|line| line.contains("\"event\":\"picture\"")).expect("an event");
+    let kept: serde_json::Value = serde_json::from_str(kept).expect("JSON");
+    assert!(kept["finished_pixels"].as_u64().is_some_and(|kept| kept > 400_000), "{kept}");
+    assert!(folder.get("a.png") == folder.get("whole.png"));
+}
+
+#[test]
 fn little_memory_is_told_before_the_work() {
     let folder = Folder::new();
     let line = "render balls.ray a.bmp --size 8000x8000 --max-pixels 100000000";
@@ -181,6 +432,11 @@ fn little_memory_is_told_before_the_work() {
         .expect(1)
         .says("of memory")
         .says("--max-memory");
+    // Who asks for it all the same is told what there was no room for.
+    shell(&folder, &format!("ulimit -v 400000; exec $DOTRAY {line} --max-memory 9G"))
+        .expect(1)
+        .says("8000x8000")
+        .says("memory");
     // The same limit is enough for a picture that fits.
     shell(&folder, "ulimit -v 400000; exec $DOTRAY render balls.ray a.bmp --size 800x600 --threads 2")
         .expect(0);

@@ -17,10 +17,12 @@ use crate::world::World as PyWorld;
 use dotray_geometry::Vec3;
 use dotray_render::World;
 use dotray_scene::Diagnostic;
+use dotray_scene::Dialect;
 use dotray_scene::Files;
 use dotray_scene::LoadOptions;
 use dotray_scene::Scene;
 use dotray_scene::Sources;
+use dotray_scene::convert::convert;
 use dotray_scene::lint::lint;
 use dotray_scene::load_text;
 use dotray_scene::model::Item;
@@ -35,6 +37,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::HashMap;
+use std::path::Path;
 use std::path::PathBuf;
 
 /// A scene under construction.
@@ -85,6 +88,27 @@ impl Builder {
         let mut diagnostics = std::mem::take(&mut self.diagnostics);
         diagnostics.extend(outcome.diagnostics);
         (diagnostics, outcome.resolved)
+    }
+}
+
+impl Builder {
+    /// The scene in the words of the slides, or what those cannot say.
+    fn translated(&self, scene: &Scene) -> PyResult<String> {
+        let folder = |file: &SceneFile| file.path.parent().map(Path::to_owned).unwrap_or_default();
+        let main = scene.files.first().map(folder).unwrap_or_default();
+        let texture = |file: &SceneFile, name: &str| {
+            let path = folder(file).join(name);
+            path.strip_prefix(&main).unwrap_or(&path).to_string_lossy().into_owned()
+        };
+        let converted = convert(scene, Dialect::Slides, &texture);
+        let converted = converted.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let Some(lost) = converted.lost.first() else { return Ok(converted.text) };
+        let place = lost.span.map_or_else(String::new, |span| format!("{}: ", self.sources.place(span)));
+        let dialect = scene.files.first().map_or(Dialect::Slides, |file| file.dialect);
+        Err(PyValueError::new_err(format!(
+            "{place}{}; a file of the dialect {dialect} with something added can be saved only in the slides' words",
+            lost.message
+        )))
     }
 }
 
@@ -204,17 +228,22 @@ impl Builder {
         told(&diagnostics, &self.sources)
     }
 
-    /// The scene as `.ray` text; colours of single shapes become materials.
-    fn text(&mut self) -> PyResult<String> {
-        let mut file = std::mem::take(self.file());
-        if !file.open_sides.shapes.is_empty() {
-            let message = "caps=False cannot be saved: `.ray` has closed cylinders only; use caps=True";
-            return Err(PyValueError::new_err(message));
+    /// The scene as `.ray` text; colours of single shapes become materials. What was added to a file of another dialect
+    /// may have no words there: then all of it is said in those of the slides.
+    fn text(&mut self, changed: bool) -> PyResult<String> {
+        let mut scene = std::mem::take(&mut self.scene);
+        if scene.files.is_empty() {
+            scene.files.push(SceneFile::default());
         }
+        let file = &mut scene.files[0];
         file.colors.sort_by_key(|list| (list.kind as u8, list.first));
         file.spell_out_colors();
+        if changed && file.dialect != Dialect::Slides {
+            return self.translated(&scene);
+        }
+        let file = &scene.files[0];
         let mut text = String::new();
-        write_to(&file, &mut text).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        write_to(file, &mut text).map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(text)
     }
 

@@ -23,6 +23,8 @@ mod caster;
 
 mod world;
 
+mod pieces;
+
 mod builder;
 
 mod solids;
@@ -52,6 +54,10 @@ mod _dotray {
     use crate::pictures::encode;
     #[pymodule_export]
     use crate::pictures::write_file;
+    #[pymodule_export]
+    use crate::pieces::Film;
+    #[pymodule_export]
+    use crate::pieces::work;
     #[pymodule_export]
     use crate::solids::add_boxes;
     #[pymodule_export]

@@ -146,32 +146,40 @@ pub fn add_cylinders(
     Ok(())
 }
 
-/// Cones from starts to ends, truncated where both radii are above 0.
+/// Cones from starts to ends, truncated where both radii are above 0; without `caps` their sides alone.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "each is an array of its own, and the Python half names them")]
 pub fn add_cones(
     builder: &mut Builder,
     starts: Table<'_>,
     ends: Table<'_>,
     radii: List<'_>,
     end_radii: List<'_>,
+    caps: bool,
     material: i32,
     colors: Option<PyReadonlyArray2<'_, f32>>,
 ) -> PyResult<()> {
     let (starts, ends, file) = (starts.rows(), ends.rows(), builder.file());
-    let (radii, end_radii) = (radii.numbers(), end_radii.numbers());
-    let first = append(&mut file.cones, material, starts.len(), |i| {
+    let (radii, end_radii, count) = (radii.numbers(), end_radii.numbers(), starts.len());
+    let cone = |i: usize| {
         let height = (ends.vector(i) - starts.vector(i)).length();
         // A cone stands on a disc: one that begins with its apex is turned around.
         let (radius, top) =
             if radii.at(i) > 0.0 { (radii.at(i), end_radii.at(i)) } else { (end_radii.at(i), 0.0) };
         Cone::truncated(Vec3::ZERO, radius, top, height).map_err(|error| fault("cones", i, error))
-    })?;
-    add_colors(file, ShapeKind::Cone, first, colors.as_ref());
-    let motions = (0..starts.len()).map(|i| {
+    };
+    let (kind, first) = if caps {
+        (ShapeKind::Cone, append(&mut file.cones, material, count, cone)?)
+    } else {
+        let side = |i: usize| cone(i).map(OpenSide::Cone);
+        (ShapeKind::Open, append(&mut file.open_sides, material, count, side)?)
+    };
+    add_colors(file, kind, first, colors.as_ref());
+    let motions = (0..count).map(|i| {
         let (start, end) = (starts.vector(i), ends.vector(i));
         if radii.at(i) > 0.0 { upright(start, end) } else { upright(end, start) }
     });
-    add_grouped(file, ShapeKind::Cone, first, motions);
+    add_grouped(file, kind, first, motions);
     Ok(())
 }
 

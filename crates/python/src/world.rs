@@ -16,6 +16,7 @@ use crate::view::camera;
 use crate::view::light;
 use dotray_geometry::Vec3;
 use dotray_render::Layer;
+use dotray_render::LayerPicture;
 use dotray_render::Observer;
 use dotray_render::Progress;
 use dotray_render::RenderError;
@@ -53,14 +54,14 @@ pub struct World {
 }
 
 /// Background, ambient light, lights.
-type LightChoice = ([f64; 3], [f64; 3], Vec<LightNumbers>);
+pub(crate) type LightChoice = ([f64; 3], [f64; 3], Vec<LightNumbers>);
 
 /// How far the picture has come, seen from Python's thread.
 #[derive(Default)]
-struct Watch {
+pub(crate) struct Watch {
     finished: AtomicU64,
     total: AtomicU64,
-    cancel: AtomicBool,
+    pub(crate) cancel: AtomicBool,
 }
 
 impl Observer for Watch {
@@ -85,7 +86,7 @@ impl Watch {
     }
 }
 
-fn render_fault(error: RenderError) -> PyErr {
+pub(crate) fn render_fault(error: RenderError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
@@ -96,7 +97,7 @@ impl World {
         Self { world: Mutex::new(world), pool: Mutex::default(), shape_count }
     }
 
-    fn locked(&self) -> MutexGuard<'_, dotray_render::World> {
+    pub(crate) fn locked(&self) -> MutexGuard<'_, dotray_render::World> {
         self.world.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -139,7 +140,7 @@ impl World {
 }
 
 /// What may be set anew before a picture.
-fn set_view(
+pub(crate) fn set_view(
     world: &mut dotray_render::World,
     seen: Option<CameraNumbers>,
     lit: Option<([Vec3; 2], Vec<Light>)>,
@@ -152,10 +153,33 @@ fn set_view(
     }
 }
 
-fn lighting(choice: Option<LightChoice>) -> PyResult<Option<([Vec3; 2], Vec<Light>)>> {
+pub(crate) fn lighting(choice: Option<LightChoice>) -> PyResult<Option<([Vec3; 2], Vec<Light>)>> {
     let Some((background, ambient, lights)) = choice else { return Ok(None) };
     let lights = lights.iter().map(light).collect::<PyResult<Vec<_>>>()?;
     Ok(Some(([background, ambient].map(Vec3::from_array), lights)))
+}
+
+/// The layers of these names.
+pub(crate) fn layers_of(names: &[String]) -> PyResult<Vec<Layer>> {
+    let of_name = |name: &String| {
+        Layer::ALL.into_iter().find(|layer| layer.name() == name).ok_or_else(|| {
+            let known = Layer::ALL.map(Layer::name).join(", ");
+            PyValueError::new_err(format!("layers has {name:?}; expected some of {known}"))
+        })
+    };
+    names.iter().map(of_name).collect()
+}
+
+/// Layers by name, each as an array with its channels' names.
+pub(crate) fn layer_arrays(py: Python<'_>, layers: Vec<LayerPicture>) -> PyResult<Bound<'_, PyDict>> {
+    let told = PyDict::new(py);
+    for layer in layers {
+        let shape = (layer.height, layer.width, layer.layer.channels().len());
+        let array = Array3::from_shape_vec(shape, layer.samples);
+        let array = array.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        told.set_item(layer.layer.name(), (array.into_pyarray(py), layer.layer.channels().to_vec()))?;
+    }
+    Ok(told)
 }
 
 fn figures<'py>(py: Python<'py>, stats: &Stats) -> PyResult<Bound<'py, PyDict>> {
@@ -226,13 +250,7 @@ impl World {
         light: Option<LightChoice>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let of_name = |name: &String| {
-            Layer::ALL.into_iter().find(|layer| layer.name() == name).ok_or_else(|| {
-                let known = Layer::ALL.map(Layer::name).join(", ");
-                PyValueError::new_err(format!("layers has {name:?}; expected some of {known}"))
-            })
-        };
-        let wanted = names.iter().map(of_name).collect::<PyResult<Vec<_>>>()?;
+        let wanted = layers_of(&names)?;
         let (options, lit, watch) = (choices.options()?, lighting(light)?, Watch::default());
         let tick = |py: Python<'_>| watch.tell(py, progress.as_ref());
         let layers = watched(py, &watch.cancel, tick, || {
@@ -240,14 +258,7 @@ impl World {
             set_view(&mut world, camera, lit);
             render_layers(&world, &options, &wanted, &watch)
         })?;
-        let told = PyDict::new(py);
-        for layer in layers.map_err(render_fault)?.unwrap_or_default() {
-            let shape = (layer.height, layer.width, layer.layer.channels().len());
-            let array = Array3::from_shape_vec(shape, layer.samples);
-            let array = array.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-            told.set_item(layer.layer.name(), (array.into_pyarray(py), layer.layer.channels().to_vec()))?;
-        }
-        Ok(told)
+        layer_arrays(py, layers.map_err(render_fault)?.unwrap_or_default())
     }
 
     /// Why the ray through a place of the picture (in pixels from the upper left) has its colour.

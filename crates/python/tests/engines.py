@@ -10,7 +10,7 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
-from dotray import cluster
+from dotray import _pieces
 
 HERE = str(Path(__file__).parent)
 
@@ -134,17 +134,17 @@ class Network:
 
 def count_loads():
     """From now on this worker counts how often it unpacks a scene."""
-    cluster._loads = 0
+    _pieces._loads = 0
 
     class Counting:
         @staticmethod
         def loads(content):
-            cluster._loads += 1
+            _pieces._loads += 1
             return pickle.loads(content)
 
-    cluster.pickle = Counting
+    _pieces.pickle = Counting
 
 
 def loads_so_far():
-    cluster.pickle = pickle
-    return cluster._loads
+    _pieces.pickle = pickle
+    return _pieces._loads

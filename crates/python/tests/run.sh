@@ -19,6 +19,8 @@ bin=$PWD/$venv/bin
 [ "${target#/}" = "$target" ] || bin=$venv/bin
 "$bin/pip" install -q --disable-pip-version-check "maturin>=1.16,<2" numpy pytest hypothesis mypy tqdm Pillow \
     nbconvert ipykernel "distributed>=2024"
+# MPI as a wheel; where it cannot be had, its test says that it is skipped.
+"$bin/pip" install -q --disable-pip-version-check mpi4py mpich || echo "python tests: no MPI to be had" >&2
 
 rm -rf "$wheels"
 "$bin/maturin" build --release --locked --interpreter "$bin/python" --out "$wheels"

@@ -172,8 +172,9 @@ def test_open_cylinders_have_no_discs():
     scene.add_cylinders([0, -1, 0], [0, 1, 0], 0.5, caps=False)
     caster = dotray.RayCaster(scene)
     assert caster.count_hits([[0.1, 5, 0, 0, -1, 0], [5, 0, 0, -1, 0, 0]]).tolist() == [0, 2]
-    with pytest.raises(ValueError, match="caps=False cannot be saved"):
-        scene.to_ray()
+    scene.add_cones([4, -1, 0], [4, 1, 0], 0.5, [0, 0.2], caps=False)
+    down, across = [4.05, 5, 0, 0, -1, 0], [9, 0, 0, -1, 0, 0]
+    assert dotray.RayCaster(scene).count_hits([down, across]).tolist() == [1, 6], "of the pointed one from above"
 
 
 def test_geometries_are_numbered_as_they_were_added():

@@ -18,7 +18,7 @@ from engines import Dask, count_loads, loads_so_far
 from many_hosts import film, scene
 
 import dotray
-from dotray import cluster
+from dotray import _pieces, cluster
 
 HERE = Path(__file__).parent
 OPTIONS = {"aa": "adaptive", "layers": ["depth", "normal"]}
@@ -83,7 +83,7 @@ class Unreliable(Executor):
         future = Future()
         self.submitted += 1
         if scene_.content is None:
-            scene_ = cluster._Travelling(scene_.key, "/nowhere/at/all")
+            scene_ = _pieces.Travelling(scene_.key, "/nowhere/at/all")
         else:
             self.with_scene += 1
         try:
@@ -97,11 +97,11 @@ class Unreliable(Executor):
 
 
 def test_lost_pieces_are_computed_again(expected):
-    cluster._worlds.clear()
+    _pieces._worlds.clear()
     executor = Unreliable()
     check(cluster.render(scene(), 200, 150, executor=executor, piece=32, retries=8, **OPTIONS), expected)
     assert executor.with_scene > 0, "who cannot read the file is sent the scene"
-    cluster._worlds.clear()
+    _pieces._worlds.clear()
     with pytest.raises(cluster.LostWork, match="lost too often: gone"):
         cluster.render(scene(), 200, 150, executor=Unreliable(), piece=32, retries=0)
 
@@ -115,39 +115,73 @@ def test_faults_of_the_caller_are_not_tried_again(expected):
         ({"piece": 40}, "multiple of 32"),
         ({"retries": -1}, "retries"),
         ({"piece": 8}, "piece"),
+        ({"executor": 3}, "executor is 3: expected an executor"),
     ]:
         with pytest.raises(ValueError, match=message):
-            cluster.render(scene(), 200, 150, executor=executor, **arguments)
+            cluster.render(scene(), 200, 150, **{"executor": executor, **arguments})
+
+
+class Counting(ThreadPoolExecutor):
+    submitted, most = 0, 1000
+
+    def submit(self, *arguments):
+        self.submitted += 1
+        if self.submitted > self.most:
+            raise KeyboardInterrupt
+        return super().submit(*arguments)
 
 
 def test_pieces_go_to_disk_and_are_found_again(expected, tmp_path):
-    class Counting(ThreadPoolExecutor):
-        submitted = 0
+    def files():
+        return sorted(path.name for path in tmp_path.glob("*.tiles"))
 
-        def submit(self, *arguments):
-            self.submitted += 1
-            if self.submitted > self.most:
-                raise KeyboardInterrupt
-            return super().submit(*arguments)
-
-    with Counting(1) as executor:
-        executor.most = 20
-        with pytest.raises(KeyboardInterrupt):
-            cluster.render(scene(), 200, 150, executor=executor, directory=tmp_path, piece=32, **OPTIONS)
+    arguments = {"directory": tmp_path, "piece": 64, **OPTIONS}
     with Counting(1) as executor:
         executor.most = 7
-        arguments = {"executor": executor, "directory": tmp_path, "piece": 64, **OPTIONS}
         with pytest.raises(KeyboardInterrupt):
-            cluster.render(scene(), 200, 150, **arguments)
+            cluster.render(scene(), 200, 150, executor=executor, **arguments)
+    kept = len(files())
     with Counting(1) as executor:
-        executor.most = 1000
-        check(cluster.render(scene(), 200, 150, executor=executor, directory=tmp_path, piece=64, **OPTIONS), expected)
-        first = executor.submitted
-        check(cluster.render(scene(), 200, 150, executor=executor, directory=tmp_path, piece=64, **OPTIONS), expected)
-        assert first == 12 and executor.submitted == first, "the second time all pieces are there"
-        cluster.render(scene(), 200, 150, executor=executor, directory=tmp_path, piece=64, aa=2)
-        assert executor.submitted == 24, "other options are another picture"
-    assert not list(tmp_path.glob("*.scene")) and len(list(tmp_path.glob("*.piece"))) == 24
+        check(cluster.render(scene(), 200, 150, executor=executor, **arguments), expected)
+        # 35 tiles of the picture by fours, 38 bands of the layers by fives.
+        all_, first = files(), executor.submitted
+        assert len(all_) == 9 + 8 == kept + first
+        check(cluster.render(scene(), 200, 150, executor=executor, **arguments), expected)
+        assert executor.submitted == first, "the second time all pieces are there"
+        # A damaged piece is computed again, and so is one of another picture.
+        content = bytearray((tmp_path / all_[3]).read_bytes())
+        content[len(content) // 2] ^= 1
+        (tmp_path / all_[3]).write_bytes(content)
+        cluster.render(scene(), 200, 150, executor=executor, **{**arguments, "aa": 2})
+        assert executor.submitted == first + 17, "other options are another picture"
+        other = next(name for name in files() if name not in all_)
+        (tmp_path / all_[5]).write_bytes((tmp_path / other).read_bytes())
+        check(cluster.render(scene(), 200, 150, executor=executor, **arguments), expected)
+        assert executor.submitted == first + 19, "two of them again"
+    assert not list(tmp_path.glob("*.scene")) and len(files()) == 34
+
+
+def test_what_comes_back_damaged_is_computed_again(expected):
+    class Damaging(Counting):
+        damaged = 0
+
+        def submit(self, function, *arguments):
+            def work(*given):
+                found = bytearray(function(*given))
+                if self.damaged < 3:
+                    self.damaged += 1
+                    found[len(found) // 2] ^= 0x10
+                return bytes(found)
+
+            return super().submit(work, *arguments)
+
+    with Damaging(1) as executor:
+        check(cluster.render(scene(), 200, 150, executor=executor, piece=64, **OPTIONS), expected)
+        assert executor.damaged == 3 and executor.submitted == 17 + 3
+    with Damaging(1) as executor:
+        executor.damaged = -1000
+        with pytest.raises(cluster.LostWork, match="it came back damaged"):
+            cluster.render(scene(), 200, 150, executor=executor, piece=64, retries=0)
 
 
 def test_frames_that_are_there_are_left(tmp_path):

@@ -11,8 +11,9 @@ from conftest import ROOT
 
 import dotray
 
-MODULES = ["dotray", "dotray._look", "dotray._shapes", "dotray._scene", "dotray._image", "dotray._caster"]
-MODULES += ["dotray._values", "dotray._progress", "dotray.cluster"]
+HIDDEN = ["camera", "caster", "diagnostic", "engines", "image", "look", "options", "pieces", "progress", "scene"]
+HIDDEN += ["shapes", "tree", "values"]
+MODULES = ["dotray", "dotray.cluster", *(f"dotray._{name}" for name in HIDDEN)]
 GUIDE = ROOT / "docs/python.md"
 
 

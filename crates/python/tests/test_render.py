@@ -11,6 +11,7 @@ import time
 
 import numpy as np
 import pytest
+from conftest import ROOT
 
 import dotray
 
@@ -46,6 +47,8 @@ def everything():
     group.add_spheres([[0, 0, 0], [1, 0, 0]], 0.3, material=material, color=np.float32([[1, 0.3, 0.2], [0.1, 1, 0.5]]))
     inner = group.add_group(np.diag([1, 0.5, 1, 1]))
     inner.add_boxes([0, 2, 0], 0.5, color=[0.3, 0.9, 0.4])
+    inner.add_cylinders([1, 0, 0], [[1, 1, 0.5]], 0.2, caps=False, color=[0.2, 0.4, 0.9])
+    scene.add_cones([[2, -1, 1], [-2, 2, 0]], [[2, 0, 0.5], [-2, 1, 1]], 0.3, [0.1, 0], caps=False, material=material)
     scene.add_spheres([2, 2, 0], 0.3)
     return scene
 
@@ -109,6 +112,24 @@ def test_a_loaded_scene_can_be_changed_and_saved(program, tmp_path):
     with pytest.raises(ValueError, match="part.ray"):
         (tmp_path / "other").mkdir()
         scene.save(tmp_path / "other/changed.ray")
+
+
+def test_what_is_added_to_another_dialect_is_saved_or_refused(tmp_path):
+    for name in ["blocks-unisa.scene", "pipes-hmc.ray"]:
+        scene = dotray.load(ROOT / "scenes/dialects" / name)
+        own = "#version HMC" if name.startswith("pipes") else " 0 1 0 25\n"
+        assert own in scene.to_ray(), "unchanged it stays in its own words, such as angles in degrees"
+        vertices = np.array([[-1, 0, 2], [1, 0, 2], [0, 2, 2.0]])
+        scene.add_triangles(vertices, [[0, 1, 2]], color="red")
+        if name.startswith("pipes"):
+            with pytest.raises(ValueError, match=r"pipes-hmc.ray:\d+:\d+: `slides` has no torus"):
+                scene.to_ray()
+            continue
+        path = tmp_path / "whole.ray"
+        path.write_text(scene.to_ray())
+        assert own not in path.read_text()
+        apart = abs(dotray.load(path).render(80, 60).numpy() - scene.render(80, 60).numpy())
+        assert np.mean(apart > 1e-5) < 0.001
 
 
 def test_a_sphere_is_shaded_by_the_formula():
@@ -290,8 +311,10 @@ def test_a_bar_is_shown(with_tqdm, capsys, monkeypatch):
     assert capsys.readouterr().err == "", "nobody looks"
 
 
+# A shell that puts its jobs into the background has them ignore the signal.
 CTRL_C = """
-import numpy as np, dotray, time
+import numpy as np, dotray, signal, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = dotray.Scene()
 scene.add_spheres(np.random.default_rng(0).random((1000, 3)), 0.02)
 scene.render(16, 16)
@@ -307,10 +330,13 @@ except KeyboardInterrupt:
 
 def test_ctrl_c_stops_a_picture():
     process = subprocess.Popen([sys.executable, "-c", CTRL_C], stdout=subprocess.PIPE, text=True)
-    assert process.stdout.readline() == "ready\n"
-    time.sleep(0.5)
-    process.send_signal(signal.SIGINT)
-    out, _ = process.communicate(timeout=30)
+    try:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert out.startswith("stopped") and "(16, 16, 3)" in out, out
 
 

@@ -170,15 +170,21 @@ pub fn machine_memory() -> u64 {
 
 /// What the groups that this process is in may take: a container, or a job of a scheduler, has less than its machine.
 fn cgroup_limits(read: &impl Fn(&str) -> Option<String>) -> Vec<u64> {
-    let mut files = vec!["/sys/fs/cgroup/memory/memory.limit_in_bytes".to_owned()];
     let groups = read("/proc/self/cgroup").unwrap_or_default();
-    let own = groups.lines().find_map(|line| line.strip_prefix("0::")).unwrap_or("/").to_owned();
-    let mut group = own.trim_end_matches('/');
-    loop {
-        files.push(format!("/sys/fs/cgroup{group}/memory.max"));
-        match group.rsplit_once('/') {
-            Some((around, _)) => group = around,
-            None => break,
+    // `0::/a/b` in the second version of groups; `4:memory:/a/b` in the first one, where both may be there.
+    let second = groups.lines().find_map(|line| line.strip_prefix("0::")).unwrap_or("/");
+    let first = groups.lines().find_map(|line| line.split_once(":memory:")).map_or("/", |(_, group)| group);
+    let mut files = Vec::new();
+    for (mut group, folder, file) in [
+        (second.trim_end_matches('/'), "/sys/fs/cgroup", "memory.max"),
+        (first.trim_end_matches('/'), "/sys/fs/cgroup/memory", "memory.limit_in_bytes"),
+    ] {
+        loop {
+            files.push(format!("{folder}{group}/{file}"));
+            match group.rsplit_once('/') {
+                Some((around, _)) => group = around,
+                None => break,
+            }
         }
     }
     files.iter().filter_map(|path| read(path)?.trim().parse().ok()).collect()

@@ -82,6 +82,11 @@ impl Film {
         true
     }
 
+    /// Numbers a pixel: 3, or 4 with alpha.
+    pub fn channels(&self) -> u32 {
+        self.channels
+    }
+
     /// All tiles by number.
     pub fn tiles(&self) -> &[Tile] {
         &self.tiles

@@ -5,24 +5,17 @@
 //! nothing.
 
 use crate::camera::Camera;
-use crate::error::RenderError;
-use crate::observer::Observer;
-use crate::observer::Progress;
 use crate::options::Crop;
 use crate::options::Options;
 use crate::options::Shadows;
 use crate::record::EyeRecord;
 use crate::record::MetByEye;
 use crate::sampler::Block;
-use crate::threads::on_threads;
 use crate::trace::Tracer;
 use crate::world::World;
 use dotray_accel::simd::level;
 use dotray_geometry::Vec3;
-use rayon::prelude::*;
 use std::cmp::Reverse;
-use std::sync::atomic::AtomicU64;
-use std::sync::atomic::Ordering;
 
 /// One kind of layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,52 +167,8 @@ pub struct LayerPicture {
     pub samples: Vec<f32>,
 }
 
-/// Computes layers of the window of the picture that `options` describe; `None` where the observer cancelled it.
-///
-/// # Errors
-/// Options that make no sense; threads that cannot be started.
-pub fn render_layers(
-    world: &World,
-    options: &Options,
-    wanted: &[Layer],
-    observer: &dyn Observer,
-) -> Result<Option<Vec<LayerPicture>>, RenderError> {
-    options.validate()?;
-    let geometric = wanted.iter().all(|layer| layer.is_geometric());
-    let first_hits = Options { recursion: 0, shadows: Shadows::Off, light_samples: 1, ..options.clone() };
-    let options = if geometric { &first_hits } else { options };
-    let window = options.window();
-    let (width, height) = (window.width as usize, window.height as usize);
-    let finished = AtomicU64::new(0);
-    let total_pixels = width as u64 * height as u64;
-    let bands = window.height.div_ceil(BAND);
-    let band = |number: u32| -> Option<Vec<Vec<f32>>> {
-        if observer.cancelled() {
-            return None;
-        }
-        let from = window.y + number * BAND;
-        let rows = Crop { y: from, height: BAND.min(window.y + window.height - from), ..window };
-        let samples = samples_of(world, options, wanted, rows);
-        let pixels = u64::from(rows.width) * u64::from(rows.height);
-        let finished_pixels = finished.fetch_add(pixels, Ordering::Relaxed) + pixels;
-        observer.tile_finished(&Progress { finished_pixels, total_pixels });
-        Some(samples)
-    };
-    let run = || (0..bands).into_par_iter().with_max_len(1).map(band).collect::<Option<Vec<_>>>();
-    let Some(bands) = on_threads(options.threads, run)? else { return Ok(None) };
-    let picture = |(index, &layer): (usize, &Layer)| {
-        let mut samples = Vec::with_capacity(width * height * layer.channels().len());
-        bands.iter().for_each(|band| samples.extend_from_slice(&band[index]));
-        LayerPicture { layer, width, height, samples }
-    };
-    Ok(Some(wanted.iter().enumerate().map(picture).collect()))
-}
-
-/// The rows that are traced together: as many as a brick of pixels has.
-const BAND: u32 = 4;
-
-/// The layers' numbers of some rows, the upper one first.
-fn samples_of(world: &World, options: &Options, wanted: &[Layer], rows: Crop) -> Vec<Vec<f32>> {
+/// The layers' numbers of some rows: pixel by pixel from the upper left, of each pixel one layer after the other.
+pub(crate) fn samples_of(world: &World, options: &Options, wanted: &[Layer], rows: Crop) -> Vec<f32> {
     let camera = Camera::new(&world.camera, options.width, options.height);
     let alone = wanted.iter().any(|layer| layer.is_cost());
     let mut tracer = Tracer::new(world, options, level());
@@ -231,10 +180,23 @@ fn samples_of(world: &World, options: &Options, wanted: &[Layer], rows: Crop) ->
     let records = tracer.record(&rays, alone);
     let mut places: Vec<_> = (0..pixels.len()).collect();
     places.sort_unstable_by_key(|&place| (Reverse(pixels[place].1), pixels[place].0));
-    let numbers = |layer: &Layer| {
-        let mut samples = Vec::with_capacity(places.len() * layer.channels().len());
-        places.iter().for_each(|&place| layer.append(&records[place], &mut samples));
-        samples
-    };
-    wanted.iter().map(numbers).collect()
+    let mut samples = Vec::with_capacity(places.len() * numbers_a_pixel(wanted));
+    for &place in &places {
+        wanted.iter().for_each(|layer| layer.append(&records[place], &mut samples));
+    }
+    samples
+}
+
+/// How many numbers a pixel has in all of these layers.
+pub(crate) fn numbers_a_pixel(wanted: &[Layer]) -> usize {
+    wanted.iter().map(|layer| layer.channels().len()).sum()
+}
+
+/// The options with which these layers are traced: where they lie on first hits alone, nothing else is.
+pub(crate) fn options_of(wanted: &[Layer], options: &Options) -> Options {
+    if wanted.iter().all(|layer| layer.is_geometric()) {
+        Options { recursion: 0, shadows: Shadows::Off, light_samples: 1, ..options.clone() }
+    } else {
+        options.clone()
+    }
 }

@@ -69,11 +69,14 @@ pub mod tiles;
 
 pub mod layers;
 
+pub mod layer_film;
+
 pub use caster::Caster;
 pub use error::RenderError;
 pub use film::Film;
 pub use fingerprint::Fingerprint;
-pub use layers::{Layer, LayerPicture, render_layers};
+pub use layer_film::{LayerFilm, develop_layers, layer_band, render_layers};
+pub use layers::{Layer, LayerPicture};
 pub use observer::{Observer, Progress, Silent};
 pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};
 pub use picture::Picture;

@@ -140,7 +140,7 @@ impl TilePixels {
     /// Whether there are as many samples as the tile has pixels.
     pub(crate) fn is_whole(&self) -> bool {
         let samples = self.tile.pixels().checked_mul(u64::from(self.channels));
-        matches!(self.channels, 3 | 4) && samples == Some(self.samples.len() as u64)
+        self.channels > 0 && samples == Some(self.samples.len() as u64)
     }
 }
 

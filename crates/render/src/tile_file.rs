@@ -13,6 +13,7 @@ use std::fs::File;
 use std::fs::OpenOptions;
 use std::fs::TryLockError;
 use std::io;
+use std::io::Cursor;
 use std::io::ErrorKind;
 use std::io::Read;
 use std::io::Seek;
@@ -34,6 +35,29 @@ pub struct TileFile {
     head: Vec<u8>,
     /// Where the last whole record ends.
     end: u64,
+}
+
+/// Tiles that a file may hold, the first of which has the number that follows those of the tiles known before.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    /// The tiles, in the order of their numbers.
+    pub tiles: &'a [Tile],
+    /// Numbers a pixel.
+    pub channels: u32,
+}
+
+impl Known<'_> {
+    /// The tile of a number, and its numbers a pixel.
+    fn find(known: &[Self], number: u32) -> Option<(Tile, u32)> {
+        let mut left = number as usize;
+        for Known { tiles, channels } in known {
+            match tiles.get(left) {
+                Some(tile) => return Some((*tile, *channels)),
+                None => left -= tiles.len(),
+            }
+        }
+        None
+    }
 }
 
 /// What was found in a file.
@@ -66,41 +90,13 @@ impl TileFile {
         Ok(Self { file: open(path)?, head: head_bytes(fingerprint), end: 0 })
     }
 
-    /// Reads what is there: shows each whole tile of `tiles` that has so many channels. Takes no more memory than a
-    /// tile.
+    /// Reads what is there: shows each whole tile that is `known`. Takes no more memory than a tile.
     ///
     /// # Errors
     /// What the system says.
-    pub fn read(
-        &mut self,
-        tiles: &[Tile],
-        channels: u32,
-        mut take: impl FnMut(TilePixels),
-    ) -> io::Result<Contents> {
-        let length = self.file.seek(SeekFrom::End(0))?;
-        let mut contents = Contents { fingerprint: None, lost_bytes: 0 };
-        let mut at = 0;
-        self.end = 0;
-        while at < length {
-            let read = match record_at(&mut self.file, at, tiles, channels)? {
-                Some(Record::Head(fingerprint, read)) => {
-                    contents.fingerprint.get_or_insert(fingerprint);
-                    read
-                }
-                Some(Record::Tile(pixels, read)) => {
-                    take(pixels);
-                    read
-                }
-                None => {
-                    let next = next_mark(&mut self.file, at + 1, length)?;
-                    contents.lost_bytes += next - at;
-                    at = next;
-                    continue;
-                }
-            };
-            at += read;
-            self.end = at;
-        }
+    pub fn read(&mut self, known: &[Known<'_>], mut take: impl FnMut(TilePixels)) -> io::Result<Contents> {
+        let (contents, end) = read_all(&mut self.file, known, &mut take)?;
+        self.end = end;
         Ok(contents)
     }
 
@@ -139,7 +135,7 @@ impl TileFile {
 /// What the system says.
 pub fn fingerprint_of(path: &Path) -> io::Result<Option<Fingerprint>> {
     let mut file = TileFile { file: File::open(path)?, head: Vec::new(), end: 0 };
-    Ok(file.read(&[], 0, |_| {})?.fingerprint)
+    Ok(file.read(&[], |_| {})?.fingerprint)
 }
 
 /// Reads a file of tiles that nothing is added to; see [`TileFile::read`].
@@ -152,7 +148,15 @@ pub fn read_tiles(
     channels: u32,
     take: impl FnMut(TilePixels),
 ) -> io::Result<Contents> {
-    TileFile { file: File::open(path)?, head: Vec::new(), end: 0 }.read(tiles, channels, take)
+    let mut file = TileFile { file: File::open(path)?, head: Vec::new(), end: 0 };
+    file.read(&[Known { tiles, channels }], take)
+}
+
+/// Reads what such a file holds from its bytes; see [`TileFile::read`].
+pub fn read_bytes(bytes: &[u8], known: &[Known<'_>], mut take: impl FnMut(TilePixels)) -> Contents {
+    // Bytes in memory can always be read.
+    let nothing = Contents { fingerprint: None, lost_bytes: bytes.len() as u64 };
+    read_all(&mut Cursor::new(bytes), known, &mut take).map_or(nothing, |(contents, _)| contents)
 }
 
 /// The bytes of a head, as a file starts with them.
@@ -177,13 +181,45 @@ fn open(path: &Path) -> io::Result<File> {
     }
 }
 
+/// What is there, and where the last whole record ends.
+fn read_all(
+    file: &mut (impl Read + Seek),
+    known: &[Known<'_>],
+    take: &mut dyn FnMut(TilePixels),
+) -> io::Result<(Contents, u64)> {
+    let length = file.seek(SeekFrom::End(0))?;
+    let mut contents = Contents { fingerprint: None, lost_bytes: 0 };
+    let (mut at, mut end) = (0, 0);
+    while at < length {
+        let read = match record_at(file, at, known)? {
+            Some(Record::Head(fingerprint, read)) => {
+                contents.fingerprint.get_or_insert(fingerprint);
+                read
+            }
+            Some(Record::Tile(pixels, read)) => {
+                take(pixels);
+                read
+            }
+            None => {
+                let next = next_mark(file, at + 1, length)?;
+                contents.lost_bytes += next - at;
+                at = next;
+                continue;
+            }
+        };
+        at += read;
+        end = at;
+    }
+    Ok((contents, end))
+}
+
 enum Record {
     Head(Fingerprint, u64),
     Tile(TilePixels, u64),
 }
 
 /// The whole record that starts here, if one does.
-fn record_at(file: &mut File, at: u64, tiles: &[Tile], channels: u32) -> io::Result<Option<Record>> {
+fn record_at(file: &mut (impl Read + Seek), at: u64, known: &[Known<'_>]) -> io::Result<Option<Record>> {
     let start = read_at_most(file, at, tile::HEAD)?;
     if let Some(rest) = start.strip_prefix(&HEAD_MARK) {
         let (Some(sum), Some(length)) = (rest.get(..8), rest.get(8..12).and_then(|l| l.try_into().ok()))
@@ -202,14 +238,17 @@ fn record_at(file: &mut File, at: u64, tiles: &[Tile], channels: u32) -> io::Res
         return Ok(Some(Record::Head(fingerprint, (HEAD_START + length) as u64)));
     }
     let number = TilePixels::number_in(&start);
-    let Some(tile) = number.and_then(|number| tiles.get(number as usize)) else { return Ok(None) };
-    let length = TilePixels::byte_length(tile, channels);
+    let Some((tile, channels)) = number.and_then(|number| Known::find(known, number)) else {
+        return Ok(None);
+    };
+    let length = TilePixels::byte_length(&tile, channels);
     let bytes = read_at_most(file, at, usize::try_from(length).unwrap_or(usize::MAX))?;
-    let pixels = TilePixels::from_bytes(&bytes).filter(|pixels| pixels.tile == *tile);
+    let pixels =
+        TilePixels::from_bytes(&bytes).filter(|pixels| pixels.tile == tile && pixels.channels == channels);
     Ok(pixels.map(|pixels| Record::Tile(pixels, length)))
 }
 
-fn read_at_most(file: &mut File, at: u64, length: usize) -> io::Result<Vec<u8>> {
+fn read_at_most(file: &mut (impl Read + Seek), at: u64, length: usize) -> io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(at))?;
     let mut bytes = Vec::new();
     file.take(length as u64).read_to_end(&mut bytes)?;
@@ -217,7 +256,7 @@ fn read_at_most(file: &mut File, at: u64, length: usize) -> io::Result<Vec<u8>> 
 }
 
 /// The next place at or after `at` where a record may start; `end` where there is none.
-fn next_mark(file: &mut File, at: u64, end: u64) -> io::Result<u64> {
+fn next_mark(file: &mut (impl Read + Seek), at: u64, end: u64) -> io::Result<u64> {
     const WINDOW: usize = 1 << 16;
     let mut at = at;
     while at < end {

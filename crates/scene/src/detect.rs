@@ -130,6 +130,7 @@ impl Marks {
             }
             (b"#shape_triangle", 25) => self.slides.add(*span, "a triangle of 25 arguments"),
             (b"#light_area", 13) => self.slides.add(*span, "`#light_area`"),
+            (b"#shape_side", 6 | 7) => self.slides.add(*span, "`#shape_side`"),
             (b"#vertex", 11) => self.unisa.add(*span, "a vertex of 11 numbers"),
             _other if lookalike::is_solid_geometry(word) => self.jhu.add(*span, "solid geometry"),
             _other if flag && lex::number(first).is_err() => self.hmc.add(*span, "a directive with flags"),

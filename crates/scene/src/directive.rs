@@ -51,6 +51,8 @@ pub enum Directive {
     ShapeCylinder,
     /// `#shape_cone`
     ShapeCone,
+    /// `#shape_side`
+    ShapeSide,
     /// `#shape_triangle`
     ShapeTriangle,
     /// `#vertex_num`

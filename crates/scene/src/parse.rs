@@ -301,6 +301,7 @@ impl<'a> Parser<'a> {
             Directive::ShapeBox => self.cuboid(),
             Directive::ShapeCylinder => self.cylinder(),
             Directive::ShapeCone => self.cone(),
+            Directive::ShapeSide => self.side(),
             Directive::ShapeTriangle => self.triangle(),
             Directive::Vertex => self.vertex(),
             Directive::GroupBegin => self.group_begin(),
@@ -368,6 +369,7 @@ impl<'a> Parser<'a> {
             | Directive::ShapeBox
             | Directive::ShapeCylinder
             | Directive::ShapeCone
+            | Directive::ShapeSide
             | Directive::ShapeTriangle
             | Directive::VertexNum
             | Directive::RayFileNum

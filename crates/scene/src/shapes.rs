@@ -1,10 +1,12 @@
 //! The shapes of a file by their kind.
 
+use crate::dialect::Dialect;
 use crate::model::Color;
 use crate::model::SceneFile;
 use crate::model::ShapeKind;
 use crate::span::FileId;
 use crate::span::Span;
+use dotray_geometry::OpenSide;
 use dotray_geometry::Shape;
 use dotray_geometry::Triangle;
 
@@ -30,7 +32,7 @@ impl ShapeKind {
             Self::Cone => "#shape_cone",
             Self::Triangle | Self::IndexedTriangle => "#shape_triangle",
             Self::Torus => "#shape_torus",
-            Self::Open => "#cylinder",
+            Self::Open => "#shape_side",
         }
     }
 }
@@ -77,7 +79,12 @@ impl SceneFile {
             ShapeKind::Open => &self.open_sides.starts,
         };
         let start = starts.get(index)?;
-        Some(Span { file, start, end: start + kind.directive().len() as u64 })
+        let word = match self.open_sides.shapes.get(index).filter(|_| kind == ShapeKind::Open) {
+            Some(OpenSide::Cylinder(_)) if self.dialect == Dialect::Hmc => "#cylinder",
+            Some(OpenSide::Cone(_)) if self.dialect == Dialect::Hmc => "#cone",
+            Some(OpenSide::Cylinder(_) | OpenSide::Cone(_)) | None => kind.directive(),
+        };
+        Some(Span { file, start, end: start + word.len() as u64 })
     }
 
     /// A triangle of three shared vertices; `None` where it has no area or a number names no vertex.

@@ -15,6 +15,7 @@ use crate::model::Tint;
 use crate::model::Vertex;
 use crate::number::Shortest;
 use dotray_geometry::Mat4;
+use dotray_geometry::OpenSide;
 use dotray_geometry::Vec2;
 use dotray_geometry::Vec3;
 use std::fmt;
@@ -213,8 +214,17 @@ fn write_shape(out: &mut impl Write, file: &SceneFile, kind: ShapeKind, index: u
             let [tube, ring] = [torus.tube(), torus.ring()].map(Shortest);
             write!(out, " {} {tube} {ring}", Triple(torus.center()))
         }),
-        // Only `hmc` has such a shape, and writes it itself.
-        ShapeKind::Open => Ok(()),
+        ShapeKind::Open => file.open_sides.shapes.get(index).map_or(Ok(()), |side| {
+            let (center, numbers, top) = match side {
+                OpenSide::Cylinder(shape) => (shape.center(), [shape.radius(), shape.height()], None),
+                OpenSide::Cone(shape) => {
+                    (shape.center(), [shape.radius(), shape.height()], Some(shape.top()))
+                }
+            };
+            let [radius, height] = numbers.map(Shortest);
+            write!(out, " {} {radius} {height}", Triple(center))?;
+            top.map_or(Ok(()), |top| write!(out, " {}", Shortest(top)))
+        }),
         ShapeKind::IndexedTriangle => {
             file.indexed_triangles.shapes.get(index).map_or(Ok(()), |[a, b, c]| write!(out, " {a} {b} {c}"))
         }

@@ -77,6 +77,10 @@ fn the_canonical_text() {
   #group_begin  0 -2 0 0.1  2 0 0 0.2  0 0 2 0.3  0 0 0 1
     #shape_cylinder 0 0 0 0 1 1.4
     #shape_cone 0 0 -2.1 0 1.71 0.62
+    #shape_cone 0 0 -2.1 0 1.71 0.62 0.5
+    #shape_side 0 0 1 2 1.5 3
+    #shape_side 0 0 1 2 1.5 3 0
+    #shape_side 0 0 1 2 1.5 3 0.25
     #ray_file_instance 0
   #group_end
   #shape_triangle 0  0 -1 0  1 1 -0.2  -1 0.85 0.11  0 0 1  0 0 1  0 0 0  0.5 0  1 1  0 1

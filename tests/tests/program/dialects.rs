@@ -191,6 +191,20 @@ fn what_is_lost_is_told() {
         assert!(told, "{to}");
     }
     assert!(converted(&blunt, Dialect::Slides).lost.is_empty());
+    let hollow = read_as(
+        "#shape_side -1 0 0 0 1 2  #shape_side -1 0 0 0 1 2 .5  #light_dir 1 1 1 0 0 -1",
+        Dialect::Slides,
+    );
+    for to in Dialect::ALL {
+        let lost: Vec<String> = converted(&hollow, to).lost.into_iter().map(|lost| lost.message).collect();
+        let told = |part: &str| lost.iter().filter(|message| message.contains(part)).count();
+        let expected = match to {
+            Dialect::Slides => (0, 0),
+            Dialect::Hmc => (0, 1),
+            Dialect::Uva | Dialect::Jhu | Dialect::Unisa => (2, 1),
+        };
+        assert_eq!((told("closed by discs"), told("no truncated cone")), expected, "{to}: {lost:?}");
+    }
     let curved = read_as(
         "#shape_triangle -1  0 0 0  1 0 0  0 1 0  0 0 1  0 1 1  1 0 1  0 0  1 0  0 1  #light_dir 1 1 1 0 0 -1",
         Dialect::Slides,

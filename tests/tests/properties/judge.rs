@@ -122,13 +122,25 @@ fn crossings(shape: &AnyShape, origin: V, direction: V) -> Vec<f64> {
             solid_crossings(depth, (r * r + half * half).sqrt(), origin, direction)
         }
         "#shape_cone" => {
-            let (r, h, top) = (n[3], n[4], n.get(5).copied().unwrap_or(0.0));
-            let width = |y: f64| top + (r - top) * (h / 2.0 - y) / h;
-            let depth = |p: V| ((p[0] * p[0] + p[2] * p[2]).sqrt() - width(p[1])).max(p[1].abs() - h / 2.0);
-            solid_crossings(depth, (r.max(top).powi(2) + h * h / 4.0).sqrt(), origin, direction)
+            let ends = [n[3], n.get(5).copied().unwrap_or(0.0)];
+            round_crossings(ends, n[4], origin, direction)
+        }
+        "#shape_side" => {
+            let ends = [n[3], n.get(5).copied().unwrap_or(n[3])];
+            let mut found = round_crossings(ends, n[4], origin, direction);
+            // What is left are crossings of the discs, which lie at half the height but for rounding.
+            found.retain(|&t| along(origin, direction, t)[1].abs() < n[4] / 2.0 * (1.0 - 1e-9));
+            found
         }
         other => panic!("no judge for {other}"),
     }
+}
+
+/// Of a solid round about y, with these radii at its lower and its upper end.
+fn round_crossings([low, high]: [f64; 2], height: f64, origin: V, direction: V) -> Vec<f64> {
+    let width = |y: f64| high + (low - high) * (height / 2.0 - y) / height;
+    let depth = |p: V| ((p[0] * p[0] + p[2] * p[2]).sqrt() - width(p[1])).max(p[1].abs() - height / 2.0);
+    solid_crossings(depth, (low.max(high).powi(2) + height * height / 4.0).sqrt(), origin, direction)
 }
 
 fn triangle_crossing(v: [V; 3], origin: V, direction: V) -> Option<f64> {
@@ -192,8 +204,13 @@ fn the_judge_knows_simple_cases() {
         (&[0.0, 0.0, 0.0, 1.0, 2.0], "#shape_cylinder", 9.0),
         (&[0.0, 0.0, 0.0, 1.0, 2.0], "#shape_cone", 9.5),
         (&[0.0, 0.0, 0.0, 1.0, 2.0, 2.0], "#shape_cone", 8.5),
+        (&[0.0, 0.0, 0.0, 1.0, 2.0], "#shape_side", 9.0),
+        (&[0.0, 0.0, 0.0, 1.0, 2.0, 2.0], "#shape_side", 8.5),
     ] {
         let judge = Judge::new(&[group(unit, shape(kind, numbers))]);
         assert!((judge.nearest(eye, forward, 0.0).expect("a hit") - t).abs() < 1e-12, "{kind}");
+        // What comes from above and goes down inside of a side meets nothing.
+        let above = judge.nearest([0.25, 10.0, 0.0], [0.0, -1.0, 0.0], 0.0);
+        assert_eq!(above.is_none(), kind == "#shape_side", "{kind}");
     }
 }

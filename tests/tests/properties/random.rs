@@ -109,6 +109,8 @@ pub fn shape() -> impl Strategy<Value = AnyShape> {
         of("#shape_cylinder", 2),
         of("#shape_cone", 2),
         of("#shape_cone", 3),
+        of("#shape_side", 2),
+        of("#shape_side", 3),
         triangle,
     ]
 }

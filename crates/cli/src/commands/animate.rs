@@ -12,10 +12,10 @@ use crate::exit::Failure;
 use crate::exit::say;
 use crate::extras::Encoded;
 use crate::extras::encoded;
-use crate::extras::layers_of;
 use crate::interrupt;
 use crate::keyframes::Animation;
 use crate::long_args::ProgressName;
+use crate::making::Made;
 use crate::making::make;
 use crate::many_args::AnimateArgs;
 use crate::meaning::Place;
@@ -111,9 +111,9 @@ impl Animate<'_> {
         let plan = Plan { output: Place::File(path.to_path_buf()), ..self.plan.clone() };
         let set = self.stage.set(frame)?;
         let start = Instant::now();
-        let Rendering { image, stats, .. } = make(set.world, &plan, &set.extras, None, deadline)?.rendering;
-        let seconds = start.elapsed().as_secs_f64();
-        let layers = layers_of(set.world, &plan)?;
+        let Made { rendering: Rendering { image, stats, .. }, layers: (layers, looking), .. } =
+            make(set.world, &plan, set.extras, None, deadline)?;
+        let seconds = start.elapsed().as_secs_f64() - looking;
         let image = set.extras.apply(image, set.world, &plan)?;
         let Encoded { picture, layers } = encoded(&image, layers, &plan)?;
         interrupt::check()?;

@@ -96,9 +96,11 @@ pub fn run(typed: &PlanArgs, color: When) -> Result<(), Failure> {
         return Ok(());
     }
     let pieces = made.pieces.len();
-    let seconds = looks.seconds * frames.len() as f64 / pieces.max(1) as f64;
+    let full = made.pieces.iter().filter(|piece| !piece.parts.is_empty()).count();
+    let seconds = looks.seconds * frames.len() as f64 / full.max(1) as f64;
+    let empty = if full < pieces { format!(", of which {} are empty", pieces - full) } else { String::new() };
     put(format!(
-        "{pieces} pieces, 0 to {}; about {seconds:.1} s of one core each\n",
+        "{pieces} pieces, 0 to {}{empty}; about {seconds:.1} s of one core each\n",
         pieces.saturating_sub(1)
     )
     .as_bytes())

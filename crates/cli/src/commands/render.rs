@@ -20,7 +20,6 @@ use crate::exit::say;
 use crate::extras::Encoded;
 use crate::extras::Extras;
 use crate::extras::encoded;
-use crate::extras::layers_of;
 use crate::input;
 use crate::input::Understood;
 use crate::input::understand;
@@ -69,8 +68,12 @@ fn ready(typed: &RenderArgs, plan: &Plan, messages: Messages) -> Result<Ready, F
         messages.print(&faults, &sources);
         Failure::Reported
     })?;
-    let fingerprint =
-        plan.long.checkpoint.is_some().then(|| Fingerprint::of(&resolved, &textures, &plan.options));
+    let fingerprint = plan.long.checkpoint.is_some().then(|| {
+        let fingerprint = Fingerprint::of(&resolved, &textures, &plan.options);
+        // A checkpoint of other layers has bands of other numbers.
+        let names: Vec<&str> = plan.layers.iter().map(|layer| layer.name()).collect();
+        if names.is_empty() { fingerprint } else { fingerprint.with("layers", &names.join(",")) }
+    });
     // Nothing can be said of a place in the text any more, and the tree may want the memory.
     drop(sources);
     let world = World::build(resolved, textures, &plan.prepare).map_err(|faults| {
@@ -96,13 +99,11 @@ pub fn run(typed: &RenderArgs, color: When) -> Result<(), Failure> {
     for (stage, seconds) in seconds.iter().chain(world.seconds()) {
         tracing::debug!(stage, seconds, "done");
     }
-    let Made { rendering: Rendering { image, stats, .. }, keep } =
+    let Made { rendering: Rendering { image, stats, .. }, layers: (layers, looking), keep } =
         make(&world, &plan, &extras, fingerprint, deadline)?;
     seconds.extend(&stats.seconds);
-    let looking = Instant::now();
-    let layers = layers_of(&world, &plan)?;
     if !layers.is_empty() {
-        seconds.push(("layers", looking.elapsed().as_secs_f64()));
+        seconds.push(("layers", looking));
     }
     let encoding = Instant::now();
     let image = extras.apply(image, &world, &plan)?;

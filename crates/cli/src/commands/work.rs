@@ -45,6 +45,10 @@ pub fn run(typed: &WorkArgs, color: When) -> Result<(), Failure> {
             typed.piece
         )));
     };
+    if piece.parts.is_empty() {
+        say(&format!("piece {} is empty: the picture has fewer tiles than the plan has pieces", typed.piece));
+        return Ok(());
+    }
     let folder = &typed.output;
     fs::create_dir_all(folder).map_err(|error| Failure::file("make the folder", folder, &error))?;
     interrupt::watch();
@@ -141,6 +145,8 @@ fn compute(
     let mut bytes = head_bytes(&pieces.fingerprint(part.frame));
     tiles.iter().filter_map(|tile| film.pixels(tile)).for_each(|pixels| bytes.extend(pixels.to_bytes()));
     let path = pieces.path(&typed.output, typed.piece, part);
+    // Somebody may have taken the folder away meanwhile; where it cannot be made, the write says so.
+    let _ = fs::create_dir_all(&typed.output);
     write_file(&path, &bytes).map_err(|error| Failure::Failed(error.to_string()))?;
     events::emit("saved", json!({ "kind": "piece", "file": path.display().to_string() }));
     Ok(())

@@ -11,6 +11,7 @@ VERSION: str
 
 __all__ = [
     "Builder",
+    "Film",
     "SceneError",
     "VERSION",
     "World",
@@ -26,6 +27,7 @@ __all__ = [
     "first_not_finite",
     "first_not_positive",
     "is_singular",
+    "work",
     "write_file",
 ]
 
@@ -58,7 +60,7 @@ class Builder:
     def open_group(self, rows: Sequence[float]) -> None: ...
     def close_group(self) -> None: ...
     def check(self) -> list[_Told]: ...
-    def text(self) -> str: ...
+    def text(self, changed: bool) -> str: ...
     def build(self, choices: dict[str, Any]) -> tuple[World, list[_Told]]: ...
 
 class _View(TypedDict):
@@ -98,6 +100,7 @@ def add_cones(
     ends: _Floats,
     radii: _Floats,
     end_radii: _Floats,
+    caps: bool,
     material: int,
     colors: NDArray[np.float32] | None,
 ) -> None: ...
@@ -175,3 +178,25 @@ def encode(
     channels: Sequence[tuple[str, NDArray[np.float32]]],
 ) -> bytes: ...
 def write_file(path: str | PathLike[str], bytes: bytes) -> None: ...
+
+@final
+class Film:
+    def __new__(cls, choices: dict[str, Any], layers: Sequence[str], picture: str) -> Film: ...
+    @property
+    def counts(self) -> tuple[int, int]: ...
+    @property
+    def progress(self) -> tuple[int, int]: ...
+    def pixels(self, first: int, count: int) -> int: ...
+    def merge(self, piece: bytes, first: int, count: int) -> bool: ...
+    def take(self) -> tuple[NDArray[np.float32], dict[str, tuple[NDArray[np.float32], list[str]]]]: ...
+
+def work(
+    world: World,
+    choices: dict[str, Any],
+    layers: Sequence[str],
+    picture: str,
+    first: int,
+    count: int,
+    camera: _Camera | None = None,
+    light: _Lighting | None = None,
+) -> bytes: ...

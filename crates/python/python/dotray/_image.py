@@ -156,3 +156,10 @@ def compare(a: Image | ArrayLike, b: Image | ArrayLike, tolerance: float = 0.0) 
     first, second = (picture if isinstance(picture, Image) else Image(picture) for picture in (a, b))
     found = _dotray.compare(first.numpy(), second.numpy(), number(tolerance, "tolerance", 0.0))
     return Comparison(**found)
+
+
+def add_layers(image: Image, layers: dict[str, tuple[NDArray[np.float32], list[str]]]) -> None:
+    """Puts layers into a picture, those of one channel as (H, W)."""
+    for name, (array, channels) in layers.items():
+        image.layers[name] = array[:, :, 0] if len(channels) == 1 else array
+        image._channels[name] = channels

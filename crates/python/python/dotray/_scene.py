@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,12 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dotray import _dotray
-from dotray._image import Image
-from dotray._look import AreaLight, Camera, DirectionalLight, Light, Material, PointLight, SpotLight, Texture
+from dotray._camera import Fit, lamp_above
+from dotray._diagnostic import Diagnostic
+from dotray._image import Image, add_layers
+from dotray._look import AreaLight, Camera, DirectionalLight, Light, PointLight, SpotLight, Texture
 from dotray._look import light_of_numbers
 from dotray._progress import Bar, Progress
+from dotray._options import settings
 from dotray._shapes import Container, Group, Record
-from dotray._values import Vector, color, direction, number, pair, vector, whole
+from dotray._tree import fill, records, textures
+from dotray._values import Vector, color, direction, number, vector, whole
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -27,45 +30,7 @@ __all__ = ["Diagnostic", "Group", "Scene", "load"]
 
 
 @dataclass(frozen=True)
-class Diagnostic:
-    """One message about a scene; ``place`` is (file, line, column) where the scene was read from a file."""
-
-    severity: str
-    code: str
-    message: str
-    place: tuple[str, int, int] | None
-    help: str | None
-
-    def __str__(self) -> str:
-        where = f"{self.place[0]}:{self.place[1]}:{self.place[2]}: " if self.place else ""
-        return f"{where}{self.severity}[{self.code}]: {self.message}"
-
-
-@dataclass(frozen=True)
-class _Fit:
-    """A camera that is placed when the shapes are known."""
-
-    direction: Vector = (0.0, 0.0, -1.0)
-    up: Vector = (0.0, 1.0, 0.0)
-    half_angle: float = 0.4
-    margin: float = 1.0
-
-    def camera(self, low: Sequence[float], high: Sequence[float], width: int, height: int) -> Camera:
-        if not all(a <= b for a, b in zip(low, high)):
-            return Camera((0.0, 0.0, 0.0), self.direction, self.up, self.half_angle)
-        center = [0.5 * (a + b) for a, b in zip(low, high)]
-        radius = 0.5 * math.sqrt(sum((b - a) * (b - a) for a, b in zip(low, high)))
-        angle = self.half_angle
-        if width < height:
-            angle = math.atan(math.tan(angle) * width / height)
-        distance = self.margin * radius / math.sin(angle)
-        length = math.sqrt(sum(x * x for x in self.direction))
-        x, y, z = (c - distance * d / length for c, d in zip(center, self.direction))
-        return Camera((x, y, z), self.direction, self.up, self.half_angle)
-
-
-@dataclass(frozen=True)
-class _Base:
+class Base:
     """A file that the scene began with."""
 
     path: str
@@ -98,10 +63,10 @@ class Scene(Container):
     def __init__(self, *, background: ArrayLike | str = (1.0, 1.0, 1.0), ambient: ArrayLike | str = (0.3, 0.3, 0.3)):
         self._items: list[Record | Group] = []
         self._geometries = 0
-        self._base: _Base | None = None
+        self._base: Base | None = None
         self._world: _dotray.World | None = None
         self._camera: Camera | None = None
-        self._fit = _Fit()
+        self._fit = Fit()
         self._lights: list[Light] | None = None
         self._background = color(background, "background")
         self._ambient = color(ambient, "ambient")
@@ -163,7 +128,7 @@ class Scene(Container):
         """
         way, above = direction(direction_, "direction"), direction(up, "up")
         Camera((0.0, 0.0, 0.0), way, above, half_angle)
-        self._fit = _Fit(way, above, float(half_angle), number(margin, "margin", 0.0))
+        self._fit = Fit(way, above, float(half_angle), number(margin, "margin", 0.0))
         self._camera = None
 
     @property
@@ -217,36 +182,10 @@ class Scene(Container):
     def _lights_from(self, camera: Camera) -> list[Light]:
         if self._lights is not None:
             return self._lights
-        forward, up = np.array(camera.direction), np.array(camera.up)
-        forward = forward / np.linalg.norm(forward)
-        right = np.cross(forward, up)
-        right = right / np.linalg.norm(right)
-        x, y, z = (forward + 0.4 * right - 0.6 * np.cross(right, forward)).tolist()
-        return [DirectionalLight((x, y, z), (0.7, 0.7, 0.7))]
-
-    def _records(self) -> Iterator[Record]:
-        """All records in the order of the tree."""
-        open_: list[Iterator[Record | Group]] = [iter(self._items)]
-        while open_:
-            for item in open_[-1]:
-                if isinstance(item, Group):
-                    open_.append(iter(item._items))
-                    break
-                yield item
-            else:
-                open_.pop()
-
-    def _textures(self) -> dict[Texture, str]:
-        """A name for each texture, under which the scene carries it."""
-        names: dict[Texture, str] = {}
-        for record in self._records():
-            texture = record.material.texture
-            if texture is not None and texture not in names:
-                names[texture] = f"dotray-texture-{len(names)}{texture.extension}"
-        return names
+        return [lamp_above(camera)]
 
     def _builder(self, names: dict[Texture, str] | None = None) -> _dotray.Builder:
-        names = self._textures() if names is None else names
+        names = textures(self._items) if names is None else names
         carried = {name: texture.data for texture, name in names.items()}
         if self._base is not None:
             carried |= self._base.files
@@ -254,28 +193,11 @@ class Scene(Container):
         if self._base is not None:
             builder.load(self._base.path, self._base.files[self._base.path])
         numbers = {texture: builder.texture(name) for texture, name in names.items()}
-        materials: dict[Material, int] = {}
-        open_: list[Iterator[Record | Group]] = [iter(self._items)]
-        while open_:
-            for item in open_[-1]:
-                if isinstance(item, Group):
-                    builder.open_group(item._matrix)
-                    open_.append(iter(item._items))
-                    break
-                material = materials.get(item.material)
-                if material is None:
-                    texture = item.material.texture
-                    material = builder.material(item.material, None if texture is None else numbers[texture])
-                    materials[item.material] = material
-                _put(builder, item, material)
-            else:
-                open_.pop()
-                if open_:
-                    builder.close_group()
+        fill(builder, self._items, numbers)
         return builder
 
-    def _add_view(self, builder: _dotray.Builder, width: int, height: int) -> None:
-        """Camera, background and light, where they are not those of the file that the scene began with."""
+    def _add_view(self, builder: _dotray.Builder, width: int, height: int) -> bool:
+        """Camera, background and light, where they are not those of the file that the scene began with; whether one is."""
         camera, light = self._view(width, height)
         if camera is not None:
             builder.camera(camera)
@@ -286,6 +208,7 @@ class Scene(Container):
             builder.clear_lights()
             for lamp in lights:
                 builder.light(lamp)
+        return camera is not None or light is not None
 
     def _view(self, width: int, height: int) -> tuple[Any, Any]:
         """What a picture sets anew: the camera; background, ambient light and lights."""
@@ -310,14 +233,14 @@ class Scene(Container):
 
     def _geometry_table(self) -> tuple[NDArray[np.uint32], NDArray[np.uint32], dict[int, NDArray[np.int64]]]:
         """The number of the first shape of each geometry, its number, and which items became shapes."""
-        records = [record for record in self._records() if record.count]
-        counts = np.array([record.count for record in records], np.int64)
+        found = [record for record in records(self._items) if record.count]
+        counts = np.array([record.count for record in found], np.int64)
         before = self._built().shape_count - int(counts.sum())
-        first = before + np.concatenate([[0], np.cumsum(counts)[:-1]]) if records else np.zeros(0, np.int64)
-        ids = np.array([record.geometry for record in records], np.uint32)
+        first = before + np.concatenate([[0], np.cumsum(counts)[:-1]]) if found else np.zeros(0, np.int64)
+        ids = np.array([record.geometry for record in found], np.uint32)
         if self._base is not None:
             first, ids = np.concatenate([[0], first]), np.concatenate([[0], ids])
-        kept = {record.geometry: record.kept for record in records if record.kept is not None}
+        kept = {record.geometry: record.kept for record in found if record.kept is not None}
         return first.astype(np.uint32), ids.astype(np.uint32), kept
 
     @property
@@ -474,19 +397,20 @@ class Scene(Container):
         """The scene as ``.ray`` text; a camera that is fitted is that of a picture of ``width`` × ``height``.
 
         Single shapes' colours become materials, one for each colour. Textures keep the names under which
-        :meth:`save` writes them. Raises ValueError for what ``.ray`` cannot say: cylinders without caps.
+        :meth:`save` writes them. A scene that was loaded from another dialect and changed is written in the slides'
+        words; raises ValueError for what those cannot say.
 
         >>> scene = Scene()
         >>> geometry = scene.add_spheres([0, 0, 0], 1, color="red")
         >>> scene.to_ray().splitlines()[-1]
         '#shape_sphere 0 0 0 0 1'
         """
-        return self._text(self._textures(), width, height)
+        return self._text(textures(self._items), width, height)
 
     def _text(self, names: dict[Texture, str], width: int, height: int) -> str:
         builder = self._builder(names)
-        self._add_view(builder, width, height)
-        return builder.text()
+        viewed = self._add_view(builder, width, height)
+        return builder.text(viewed or bool(self._items))
 
     def save(self, path: str | os.PathLike[str], width: int = 640, height: int = 480) -> None:
         """Writes the scene as a ``.ray`` file, which ``dotray render`` and :func:`load` make the same picture of.
@@ -510,73 +434,11 @@ class Scene(Container):
             others = [str(name) for name, _ in builder.textures()] + [name for name in base.files if name != base.path]
             if others:
                 raise ValueError(f"path is {path}: expected a place beside {base.path}, which names {others[0]}")
-        names = {texture: f"{path.stem}-texture-{i}{texture.extension}" for i, texture in enumerate(self._textures())}
+        names = {texture: f"{path.stem}-texture-{i}{texture.extension}" for i, texture in enumerate(textures(self._items))}
         text = self._text(names, width, height)
         for texture, name in names.items():
             _dotray.write_file(path.with_name(name), texture.data)
         _dotray.write_file(path, text.encode())
-
-
-def _put(builder: _dotray.Builder, record: Record, material: int) -> None:
-    arrays, shades = record.arrays, record.colors
-    match record.kind:
-        case "spheres":
-            _dotray.add_spheres(builder, arrays["centers"], arrays["radii"], material, shades)
-        case "boxes":
-            _dotray.add_boxes(builder, arrays["centers"], arrays["sizes"], material, shades)
-        case "cylinders":
-            ends = (arrays["starts"], arrays["ends"], arrays["radii"])
-            _dotray.add_cylinders(builder, *ends, arrays["caps"], material, shades)
-        case "cones":
-            ends = (arrays["starts"], arrays["ends"], arrays["radii"])
-            _dotray.add_cones(builder, *ends, arrays["end_radii"], material, shades)
-        case _:
-            mesh = (arrays["vertices"], arrays["faces"], arrays["normals"], arrays["uv"])
-            _dotray.add_triangles(builder, *mesh, material, shades)
-
-
-def settings(
-    width: int,
-    height: int,
-    *,
-    aa: int | str = "none",
-    aa_threshold: float = 0.1,
-    aa_depth: int = 3,
-    recursion: int = 5,
-    cutoff: float = 0.002,
-    shadows: str = "filtered",
-    texture_filter: str = "bilinear",
-    light_samples: int = 64,
-    transparent: bool = False,
-    crop: Sequence[int] | None = None,
-    threads: int | None = None,
-) -> dict[str, Any]:
-    """The options of a picture by the names that the compiled half has; whatever is no number is refused."""
-    most = 1 << 20
-    how = aa if isinstance(aa, str) else "grid"
-    return {
-        "width": whole(width, "width", 1, most),
-        "height": whole(height, "height", 1, most),
-        "crop": None if crop is None else pair(crop, "crop", 4),
-        "recursion": whole(recursion, "recursion", 0, 1000),
-        "cutoff": number(cutoff, "cutoff"),
-        "aa": how,
-        "aa_grid": 1 if isinstance(aa, str) else whole(aa, "aa", 1, 64),
-        "aa_threshold": number(aa_threshold, "aa_threshold", 0.0),
-        "aa_depth": whole(aa_depth, "aa_depth", 0, 10),
-        "shadows": shadows,
-        "texture_filter": texture_filter,
-        "light_samples": whole(light_samples, "light_samples", 1, 1 << 16),
-        "transparent": bool(transparent),
-        "threads": None if threads is None else whole(threads, "threads", 1, 1024),
-    }
-
-
-def add_layers(image: Image, layers: dict[str, tuple[NDArray[np.float32], list[str]]]) -> None:
-    """Puts layers into a picture, those of one channel as (H, W)."""
-    for name, (array, channels) in layers.items():
-        image.layers[name] = array[:, :, 0] if len(channels) == 1 else array
-        image._channels[name] = channels
 
 
 def load(path: str | os.PathLike[str]) -> Scene:
@@ -611,5 +473,5 @@ def load(path: str | os.PathLike[str]) -> Scene:
         scene._camera = Camera(eye, way, above, camera[3])
     scene._geometries = 1
     base_lights = tuple(scene._lights)
-    scene._base = _Base(name, files, scene._camera, scene._background, scene._ambient, base_lights)
+    scene._base = Base(name, files, scene._camera, scene._background, scene._ambient, base_lights)
     return scene

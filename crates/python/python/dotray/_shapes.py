@@ -154,7 +154,7 @@ class Container:
         ----------
         starts, ends : (N, 3), or (3,) for one; no two the same.
         radii : (N,) or one number, above 0.
-        caps : whether discs close the ends. ``.ray`` files know closed cylinders only.
+        caps : whether discs close the ends. Sides alone are ``#shape_side`` in files, which is dotray's own directive.
         color, material : as for :meth:`add_spheres`.
 
         Returns the geometry's number; raises ValueError as :meth:`add_spheres`.
@@ -180,6 +180,7 @@ class Container:
         radii: ArrayLike,
         end_radii: ArrayLike = 0.0,
         *,
+        caps: bool = True,
         color: Color = None,
         material: Material | None = None,
     ) -> int:
@@ -189,8 +190,9 @@ class Container:
         ----------
         starts, ends : (N, 3), or (3,) for one; no two the same.
         radii : (N,) or one number: the radius at the start.
-        end_radii : (N,) or one number: the radius at the end. Where both are above 0 the cone is truncated and closed
-            by two discs; at least one is above 0.
+        end_radii : (N,) or one number: the radius at the end. Where both are above 0 the cone is truncated and has two
+            discs; at least one is above 0.
+        caps : whether discs close the ends, as for :meth:`add_cylinders`.
         color, material : as for :meth:`add_spheres`.
 
         Returns the geometry's number; raises ValueError as :meth:`add_spheres`.
@@ -211,7 +213,7 @@ class Container:
         points = np.flatnonzero((arrays["radii"] == 0.0) & (arrays["end_radii"] == 0.0))
         if len(points):
             raise ValueError(f"radii[{points[0]}] and end_radii[{points[0]}] are 0: expected one above 0")
-        return self._add("cones", count, arrays, shade, material)
+        return self._add("cones", count, {**arrays, "caps": bool(caps)}, shade, material)
 
     def add_boxes(
         self,

@@ -80,7 +80,12 @@ pub fn carry(written: &[SceneFile], mut file: SceneFile, to: Dialect, lost: &mut
     }
     if !has_truncated_cones(to) {
         for cone in &mut file.cones.shapes {
-            *cone = Cone::new(cone.center(), cone.radius(), cone.height()).unwrap_or(*cone);
+            *cone = pointed(cone);
+        }
+        for side in &mut file.open_sides.shapes {
+            if let OpenSide::Cone(cone) = side {
+                *cone = pointed(cone);
+            }
         }
     }
     match to {
@@ -121,9 +126,14 @@ fn has_truncated_cones(dialect: Dialect) -> bool {
 
 fn has_open_sides(dialect: Dialect) -> bool {
     match dialect {
-        Dialect::Hmc => true,
-        Dialect::Slides | Dialect::Uva | Dialect::Jhu | Dialect::Unisa => false,
+        Dialect::Slides | Dialect::Hmc => true,
+        Dialect::Uva | Dialect::Jhu | Dialect::Unisa => false,
     }
+}
+
+/// The cone of the same base and height with an apex.
+fn pointed(cone: &Cone) -> Cone {
+    Cone::new(cone.center(), cone.radius(), cone.height()).unwrap_or(*cone)
 }
 
 fn shapes(written: &[SceneFile], to: Dialect, lost: &mut Lost) {
@@ -139,9 +149,15 @@ fn shapes(written: &[SceneFile], to: Dialect, lost: &mut Lost) {
             let span = file.shape_span(number, ShapeKind::Cone, index);
             lose(lost, span, format!("`{to}` has no truncated cone: it goes on to an apex"));
         }
-        for index in (0..file.open_sides.shapes.len()).filter(|_| !has_open_sides(to)) {
+        for (index, side) in file.open_sides.shapes.iter().enumerate() {
             let span = file.shape_span(number, ShapeKind::Open, index);
-            lose(lost, span, format!("`{to}` has closed shapes only: it is closed by discs"));
+            let blunt = matches!(side, OpenSide::Cone(cone) if cone.top() > 0.0);
+            if blunt && !has_truncated_cones(to) {
+                lose(lost, span, format!("`{to}` has no truncated cone: it goes on to an apex"));
+            }
+            if !has_open_sides(to) {
+                lose(lost, span, format!("`{to}` has closed shapes only: it is closed by discs"));
+            }
         }
     }
 }

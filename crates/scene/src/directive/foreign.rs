@@ -46,7 +46,11 @@ pub fn words_of(dialect: Dialect) -> impl Iterator<Item = &'static Spec> {
         Dialect::Unisa => &UNISA,
     };
     let shared_by_all = [Directive::Background, Directive::Ambient, Directive::GroupEnd];
-    let shares = move |spec: &&Spec| dialect != Dialect::Hmc || shared_by_all.contains(&spec.directive);
+    let shares = move |spec: &&Spec| match dialect {
+        Dialect::Slides => true,
+        Dialect::Uva | Dialect::Jhu | Dialect::Unisa => spec.directive != Directive::ShapeSide,
+        Dialect::Hmc => shared_by_all.contains(&spec.directive),
+    };
     own.iter().chain(DIRECTIVES.iter().filter(shares))
 }
 

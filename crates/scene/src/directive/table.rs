@@ -58,7 +58,7 @@ pub(super) const MATERIAL: Arguments =
 const COUNT: Arguments = integer(&["n"], "how many follow; only a hint");
 
 /// All directives, in the order of [`Directive`].
-pub static DIRECTIVES: [Spec; 24] = [
+pub static DIRECTIVES: [Spec; 25] = [
     Spec {
         directive: Directive::Camera,
         word: "#camera",
@@ -254,7 +254,8 @@ pub static DIRECTIVES: [Spec; 24] = [
     Spec {
         directive: Directive::ShapeCone,
         word: "#shape_cone",
-        meaning: "A closed cone along y, its apex at cy + h/2; with a second radius a truncated one.",
+        meaning: "A closed cone along y, its apex at cy + h/2; with a second radius, which is an extension of this \
+                  program, a truncated one.",
         origin: Origin::Slides,
         forms: &[
             form(
@@ -275,6 +276,33 @@ pub static DIRECTIVES: [Spec; 24] = [
                     lengths(&["r2"], "radius of the upper disc, which closes it in place of the apex"),
                 ],
                 "#shape_cone 0  0 0 0  1.2 1.3 .5",
+            ),
+        ],
+    },
+    Spec {
+        directive: Directive::ShapeSide,
+        word: "#shape_side",
+        meaning: "The side of a cylinder along y, without its discs; with a second radius that of a cone.",
+        origin: Origin::Dotray,
+        forms: &[
+            form(
+                &[
+                    MATERIAL,
+                    lengths(&["cx", "cy", "cz"], "centre, at half height"),
+                    lengths(&["r"], "radius"),
+                    lengths(&["h"], "height"),
+                ],
+                "#shape_side 0  0 0 0  1 1.4",
+            ),
+            form(
+                &[
+                    MATERIAL,
+                    lengths(&["cx", "cy", "cz"], "centre, at half height"),
+                    lengths(&["r"], "radius of the lower end"),
+                    lengths(&["h"], "height"),
+                    lengths(&["r2"], "radius of the upper end; 0 for an apex"),
+                ],
+                "#shape_side 0  0 0 0  1.2 1.3 .5",
             ),
         ],
     },

@@ -10,6 +10,7 @@ use crate::model::ShapeList;
 use dotray_geometry::Cone;
 use dotray_geometry::Cuboid;
 use dotray_geometry::Cylinder;
+use dotray_geometry::OpenSide;
 use dotray_geometry::ShapeError;
 use dotray_geometry::Sphere;
 use dotray_geometry::Triangle;
@@ -41,6 +42,17 @@ impl Parser<'_> {
         let top = if self.call.count == 7 { top } else { 0.0 };
         let shape = Cone::truncated(Vec3::new(cx, cy, cz), r, top, h);
         self.shape(shape, ShapeKind::Cone, |scene| &mut scene.cones);
+    }
+
+    /// The side alone: of a cylinder, or with a second radius of a cone.
+    pub(super) fn side(&mut self) {
+        let &[_, cx, cy, cz, r, h, top, ..] = &self.values;
+        let center = Vec3::new(cx, cy, cz);
+        let shape = match self.call.count {
+            7 => Cone::truncated(center, r, top, h).map(OpenSide::Cone),
+            _other => Cylinder::new(center, r, h).map(OpenSide::Cylinder),
+        };
+        self.shape(shape, ShapeKind::Open, |scene| &mut scene.open_sides);
     }
 
     pub(super) fn triangle(&mut self) {
