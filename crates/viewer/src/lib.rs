@@ -24,8 +24,6 @@ pub mod document;
 
 pub mod rays;
 
-pub mod passes;
-
 pub mod engine;
 
 #[cfg(feature = "screen")]

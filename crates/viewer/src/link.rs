@@ -69,16 +69,21 @@ impl Link {
         Self { news, sender, commands, asked: Arc::default(), wake, interrupt }
     }
 
-    /// Tells the tracer something.
+    /// Tells the tracer something. What drops the picture under way, or answers a click, ends its portion; what lies
+    /// under the pointer can wait so long.
     pub fn send(&self, command: Command) {
+        let at_once = !matches!(command, Command::Look(..));
         // A tracer that is gone has told why on the error stream.
         let _ = self.commands.send(command);
-        self.interrupt.store(true, Ordering::Relaxed);
+        if at_once {
+            self.interrupt.store(true, Ordering::Relaxed);
+        }
         (self.wake)();
     }
 
-    /// Reads a scene: for the screen and the tracer, or for the tracer alone where the screen has it already.
-    pub fn open(&mut self, source: Source, prepare: PrepareOptions, screen: bool) {
+    /// Reads a scene for the screen and the tracer. A first one is shown even if its textures are faulty; where there
+    /// is another on the screen, that stays then.
+    pub fn open(&mut self, source: Source, prepare: PrepareOptions, first: bool) {
         let number = self.asked.fetch_add(1, Ordering::Relaxed) + 1;
         let asked = self.asked.clone();
         let (sender, commands, wake) = (self.sender.clone(), self.commands.clone(), self.wake.clone());
@@ -100,7 +105,10 @@ impl Link {
             let start = web_time::Instant::now();
             let textures = Textures::load(&resolved, &*source.files, &prepare);
             let textures = textures.map_err(|faults| messages(&faults, &document.sources));
-            if screen {
+            if !current() {
+                return;
+            }
+            if first || textures.is_ok() {
                 tell(News::Opened(Box::new(document)));
             }
             let textures = match textures {
