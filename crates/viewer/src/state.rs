@@ -209,7 +209,7 @@ impl State {
             None => Navigator::new(camera, &bounds),
         });
         if let Some(raster) = &mut self.raster {
-            raster.load(&document.packed, &document.pictures, &document.style);
+            raster.load(&document.packed, document.draft.as_ref(), &document.pictures, &document.style);
             raster.hide(&self.hidden);
         }
         self.messages.clone_from(&document.messages);
