@@ -177,6 +177,16 @@ impl State {
         self.ask(true);
     }
 
+    /// Reads the scene again because its files have changed, unless that would drop what was edited.
+    pub fn changed_outside(&mut self) {
+        if self.document.as_ref().is_some_and(Document::is_edited) {
+            let what = "the file has changed on the disk; Undo all reads it and drops what was edited here";
+            self.notice = what.to_owned();
+        } else {
+            self.reload();
+        }
+    }
+
     /// Has the tracer's tree built again.
     pub fn rebuild(&mut self) {
         self.ask(false);
