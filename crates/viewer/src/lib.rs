@@ -22,6 +22,8 @@ pub mod draft;
 
 pub mod outline;
 
+pub mod memory;
+
 pub mod document;
 
 pub mod rays;
@@ -32,13 +34,19 @@ pub mod engine;
 pub mod gpu;
 
 #[cfg(feature = "screen")]
-pub mod link;
-
-#[cfg(feature = "screen")]
 pub mod host;
 
 #[cfg(feature = "screen")]
+pub mod link;
+
+#[cfg(feature = "screen")]
 pub mod state;
+
+#[cfg(all(feature = "screen", not(target_arch = "wasm32")))]
+pub mod watch;
+
+#[cfg(feature = "screen")]
+pub mod inbox;
 
 #[cfg(feature = "screen")]
 pub mod panels;
@@ -46,8 +54,11 @@ pub mod panels;
 #[cfg(feature = "screen")]
 pub mod viewport;
 
-#[cfg(feature = "screen")]
-pub mod watch;
+#[cfg(all(feature = "screen", target_arch = "wasm32"))]
+pub mod report;
 
 #[cfg(feature = "screen")]
 pub mod app;
+
+#[cfg(all(feature = "screen", target_arch = "wasm32"))]
+pub mod web;

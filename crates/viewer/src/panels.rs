@@ -37,6 +37,8 @@ pub struct Panels {
     pub theme: Theme,
     /// Whether the next drag marks the part to trace.
     pub marking: bool,
+    /// Whether the user wants to pick files.
+    pub picking: bool,
     search: String,
     found: Option<(String, Vec<u32>)>,
     picture_name: String,

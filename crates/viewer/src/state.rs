@@ -181,6 +181,16 @@ impl State {
         }
     }
 
+    /// Reads the scene again because its files have changed, unless that would drop what was edited.
+    pub fn changed_outside(&mut self) {
+        if self.document.as_ref().is_some_and(Document::is_edited) {
+            let what = "the file has changed on the disk; Undo all reads it and drops what was edited here";
+            self.notice = what.to_owned();
+        } else {
+            self.reload();
+        }
+    }
+
     /// Takes what has come; answers whether a scene was among it.
     pub fn take_news(&mut self, ctx: &egui::Context) -> bool {
         let mut any = false;

@@ -29,6 +29,8 @@ pub struct Viewport {
     drawn: Option<egui::TextureId>,
     /// Whether that was drawn for a traced picture.
     over_traced: bool,
+    /// Where it was drawn last.
+    rect: Option<Rect>,
 }
 
 impl Viewport {
@@ -42,6 +44,7 @@ impl Viewport {
             state.size = size;
             state.moved();
         }
+        self.rect = Some(rect);
         let response = ui.allocate_rect(rect, egui::Sense::click_and_drag());
         if state.document.is_some() {
             self.lead(ui, state, panels, &response, rect);
@@ -60,6 +63,11 @@ impl Viewport {
                 |x: f64, y: f64| rect.min + egui::vec2(rect.width() * x as f32, rect.height() * y as f32);
             frame(ui, Rect::from_two_pos(at(region[0], region[1]), at(region[2], region[3])));
         }
+    }
+
+    /// Where in the window it was drawn last.
+    pub fn rect(&self) -> Option<Rect> {
+        self.rect
     }
 
     fn lead(&mut self, ui: &Ui, state: &mut State, panels: &mut Panels, response: &Response, rect: Rect) {

@@ -3,7 +3,7 @@
 use super::Panels;
 use crate::edit::camera_line;
 use crate::edit::rounded_camera;
-use crate::host;
+use crate::inbox;
 use crate::state::Mode;
 use crate::state::State;
 use eframe::egui;
@@ -41,6 +41,11 @@ impl Theme {
 
 pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
     ui.horizontal_wrapped(|ui| {
+        if inbox::CAN_PICK {
+            let what = "A .ray file with its textures; they stay on this machine";
+            panels.picking |= ui.button("Open …").on_hover_text(what).clicked();
+            ui.separator();
+        }
         let mode = state.mode;
         ui.selectable_value(&mut state.mode, Mode::Preview, "Preview");
         ui.selectable_value(&mut state.mode, Mode::Traced, "Traced").on_hover_text("T");
@@ -97,18 +102,18 @@ pub fn write(state: &mut State, with_camera: bool) {
             return;
         }
     };
-    let Some(document) = &state.document else { return };
+    let (Some(document), Some(source)) = (&state.document, &state.source) else { return };
     let mut names = Vec::new();
     for (file, text) in &texts {
         let path = document.sources.path(*file);
-        if !host::is_as_read(path, document.sources.bytes(*file)) {
+        if !source.files.is_as_read(path, document.sources.bytes(*file)) {
             state.notice = format!(
                 "`{}` is not what is shown: it has changed on the disk, or is compressed; nothing was written",
                 path.display()
             );
             return;
         }
-        if let Err(sentence) = host::store(path, text) {
+        if let Err(sentence) = source.files.store(path, text) {
             state.notice = sentence;
             return;
         }

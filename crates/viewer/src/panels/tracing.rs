@@ -102,7 +102,7 @@ fn save(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
 /// Stores the traced picture under the name that stands there.
 pub fn save_picture(panels: &Panels, state: &mut State) {
     let path = std::path::Path::new(panels.picture_name.trim());
-    let stored = state.encoded(path).and_then(|bytes| host::store(path, &bytes));
+    let stored = state.encoded(path).and_then(|bytes| host::save(path, &bytes));
     state.notice = match stored {
         Ok(()) => format!("saved: {}", path.display()),
         Err(sentence) => sentence,
