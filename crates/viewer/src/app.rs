@@ -115,6 +115,9 @@ impl App {
         if pressed(Modifiers::NONE, Key::F1) {
             self.panels.help = !self.panels.help;
         }
+        if pressed(Modifiers::NONE, Key::V) {
+            self.panels.alone = !self.panels.alone;
+        }
         if pressed(Modifiers::NONE, Key::Escape) {
             self.panels.marking = false;
             state.clear_selection();

@@ -112,7 +112,7 @@ impl Raster {
         }
     }
 
-    /// The device and the interface that draw, as people read them.
+    /// The device, the interface and the driver that draw, as people read them.
     pub fn device_name(&self) -> String {
         let info = self.state.adapter.get_info();
         let kind = match info.device_type {
@@ -121,7 +121,18 @@ impl Raster {
             wgpu::DeviceType::VirtualGpu => "virtual GPU",
             wgpu::DeviceType::Other => "device",
         };
-        format!("{} · {kind} · {:?}", info.name, info.backend)
+        let backend = match info.backend {
+            wgpu::Backend::Gl => "OpenGL".to_owned(),
+            wgpu::Backend::BrowserWebGpu => "WebGPU".to_owned(),
+            other @ (wgpu::Backend::Noop
+            | wgpu::Backend::Vulkan
+            | wgpu::Backend::Metal
+            | wgpu::Backend::Dx12) => format!("{other:?}"),
+        };
+        let driver =
+            Some(info.driver_info.trim()).filter(|driver| !driver.is_empty() && *driver != info.name);
+        let parts = [Some(info.name.as_str()), Some(kind), Some(backend.as_str()), driver];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
     }
 
     /// Takes a scene, and its draft where it has one.

@@ -33,6 +33,8 @@ pub struct Panels {
     pub tab: Tab,
     /// Whether the keys are explained.
     pub help: bool,
+    /// Whether the panels beside the view are away.
+    pub alone: bool,
     /// Light, dark, or as the system has it.
     pub theme: Theme,
     /// Whether the next drag marks the part to trace.
@@ -42,6 +44,8 @@ pub struct Panels {
     search: String,
     found: Option<(String, Vec<u32>)>,
     picture_name: String,
+    /// The scene that this name was made for.
+    picture_of: Option<std::path::PathBuf>,
     scroll_to: Option<usize>,
     messages_hidden: bool,
     last_selected: Option<u32>,
@@ -52,12 +56,14 @@ impl Panels {
     pub fn show(&mut self, ui: &mut egui::Ui, state: &mut State) {
         egui::Panel::top("toolbar").show(ui, |ui| toolbar::show(self, ui, state));
         egui::Panel::bottom("status").show(ui, |ui| status::show(ui, state));
-        egui::Panel::left("scene").exact_size(300.0).show(ui, |ui| self.left(ui, state));
-        egui::Panel::right("tracing").exact_size(310.0).show(ui, |ui| {
-            tracing::show(self, ui, state);
-            ui.separator();
-            rays::show(ui, state);
-        });
+        if !self.alone {
+            egui::Panel::left("scene").exact_size(300.0).show(ui, |ui| self.left(ui, state));
+            egui::Panel::right("tracing").exact_size(310.0).show(ui, |ui| {
+                tracing::show(self, ui, state);
+                ui.separator();
+                rays::show(ui, state);
+            });
+        }
         messages::show(self, ui, state);
         if self.help {
             toolbar::help(self, ui);

@@ -77,7 +77,7 @@ impl Viewport {
             (f64::from(offset.x), f64::from(offset.y))
         };
         if panels.marking {
-            self.mark(ui, state, panels, response, rect);
+            self.mark(ui, state, panels, rect);
             return;
         }
         drag(ui, state, response, rect.height());
@@ -114,23 +114,38 @@ impl Viewport {
         }
     }
 
-    fn mark(&mut self, ui: &Ui, state: &mut State, panels: &mut Panels, response: &Response, rect: Rect) {
-        if response.drag_started() {
-            self.corner = response.interact_pointer_pos();
+    /// Follows the button itself, not what became of it by the end of a frame: frames may be slow, hands are not.
+    fn mark(&mut self, ui: &Ui, state: &mut State, panels: &mut Panels, rect: Rect) {
+        let mut ended = None;
+        ui.input(|input| {
+            for event in &input.events {
+                let egui::Event::PointerButton { pos, button: PointerButton::Primary, pressed, .. } = event
+                else {
+                    continue;
+                };
+                if !pressed {
+                    ended = self.corner.take().map(|corner| Rect::from_two_pos(corner, *pos)).or(ended);
+                } else if rect.contains(*pos) {
+                    self.corner = Some(*pos);
+                }
+            }
+        });
+        let at = ui.input(|input| input.pointer.latest_pos());
+        if let Some((corner, at)) = self.corner.zip(at) {
+            frame(ui, Rect::from_two_pos(corner, at).intersect(rect));
         }
-        let (Some(corner), Some(at)) = (self.corner, response.interact_pointer_pos()) else { return };
-        frame(ui, Rect::from_two_pos(corner, at));
-        if response.drag_stopped() {
-            let part = |p: egui::Pos2| {
-                let offset = p - rect.min;
-                [f64::from(offset.x / rect.width()), f64::from(offset.y / rect.height())]
-            };
-            let ([ax, ay], [bx, by]) = (part(corner), part(at));
-            state.region = Some([ax.min(bx), ay.min(by), ax.max(bx), ay.max(by)]);
-            (self.corner, panels.marking) = (None, false);
-            state.mode = Mode::Traced;
-            state.restart();
-        }
+        let Some(marked) = ended.map(|marked| marked.intersect(rect)).filter(Rect::is_positive) else {
+            return;
+        };
+        let part = |p: egui::Pos2| {
+            let offset = p - rect.min;
+            [f64::from(offset.x / rect.width()), f64::from(offset.y / rect.height())]
+        };
+        let ([left, top], [right, bottom]) = (part(marked.min), part(marked.max));
+        state.region = Some([left, top, right, bottom]);
+        panels.marking = false;
+        state.mode = Mode::Traced;
+        state.restart();
     }
 
     /// The scene, the traced picture over it as far as there is one, and lines over that.

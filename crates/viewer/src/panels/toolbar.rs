@@ -78,6 +78,7 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
             panels.theme = theme;
             ui.ctx().set_theme(preference);
         }
+        ui.toggle_value(&mut panels.alone, "View alone").on_hover_text("Without the panels beside it (V)");
         if ui.button("Keys").on_hover_text("F1").clicked() {
             panels.help = !panels.help;
         }
@@ -123,7 +124,7 @@ pub fn write(state: &mut State, with_camera: bool) {
     state.reload();
 }
 
-const KEYS: [(&str, &str); 17] = [
+const KEYS: [(&str, &str); 19] = [
     ("drag", "orbit"),
     ("right or middle drag, Shift + drag", "pan"),
     ("wheel", "nearer, farther"),
@@ -140,11 +141,15 @@ const KEYS: [(&str, &str); 17] = [
     ("I", "show the selection alone"),
     ("G", "mark the part to trace with the next drag"),
     ("Ctrl + S", "save the traced picture"),
+    ("V", "the view alone, without the panels beside it"),
     ("Escape", "select nothing"),
+    ("F1", "this list"),
 ];
 
 pub fn help(panels: &mut Panels, ui: &Ui) {
-    egui::Window::new("Keys").open(&mut panels.help).resizable(false).show(ui.ctx(), |ui| {
+    let anchor = egui::Align2::CENTER_CENTER;
+    let window = egui::Window::new("Keys").open(&mut panels.help).resizable(false).anchor(anchor, [0.0, 0.0]);
+    window.show(ui.ctx(), |ui| {
         egui::Grid::new("keys").striped(true).show(ui, |ui| {
             for (key, meaning) in KEYS {
                 ui.strong(key);

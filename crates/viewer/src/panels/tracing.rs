@@ -85,8 +85,10 @@ fn region(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
 }
 
 fn save(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
-    if panels.picture_name.is_empty() {
-        let path = state.document.as_ref().map(|document| document.path.with_extension("png"));
+    let scene = state.document.as_ref().map(|document| &document.path);
+    if panels.picture_of.as_ref() != scene {
+        panels.picture_of = scene.cloned();
+        let path = scene.map(|path| path.with_extension("png"));
         panels.picture_name = path.map_or_else(String::new, |path| path.display().to_string());
     }
     ui.horizontal(|ui| {
