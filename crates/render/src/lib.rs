@@ -76,7 +76,7 @@ pub use fingerprint::Fingerprint;
 pub use layers::{Layer, LayerPicture, render_layers};
 pub use observer::{Observer, Progress, Silent};
 pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};
-pub use picture::Picture;
+pub use picture::{Parts, Picture};
 pub use query::{Crossing, Nearest};
 pub use stats::{MemoryPart, Stats};
 pub use threads::on_threads;

@@ -29,15 +29,18 @@ impl Desk {
     }
 
     pub fn send(&self, command: Command) {
+        let at_once = !matches!(command, Command::Look(..));
         // A tracer that is gone has told why on the error stream.
         let _ = self.commands.send(command);
-        self.interrupt.store(true, Ordering::Relaxed);
+        if at_once {
+            self.interrupt.store(true, Ordering::Relaxed);
+        }
     }
 
     pub fn open(&mut self, asked: Asked) {
         let (teller, commands) = (self.teller.clone(), self.commands.clone());
         std::thread::spawn(move || {
-            let Some((resolved, textures)) = teller.read(&asked) else { return };
+            let Some((resolved, textures)) = teller.read(&asked, &*asked.source.files) else { return };
             let start = web_time::Instant::now();
             if let Some(world) = teller.build(&asked, resolved, textures) {
                 let _ = commands.send(Command::World(Some(world)));

@@ -20,8 +20,7 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
         state.restart();
     }
     if state.accel != accel {
-        state.restart();
-        state.rebuild();
+        state.reload();
     }
     region(panels, ui, state);
     save(panels, ui, state);
@@ -63,10 +62,14 @@ fn choices(ui: &mut Ui, state: &mut State) {
     });
     ui.end_row();
     ui.label("Accelerator").on_hover_text("The picture does not depend on it");
-    egui::ComboBox::from_id_salt("accel").selected_text(state.accel.name()).show_ui(ui, |ui| {
-        for kind in Kind::ALL {
-            ui.selectable_value(&mut state.accel, kind, kind.name());
-        }
+    // For another one the scene is read again, which would drop what was edited here.
+    let edited = state.document.as_ref().is_some_and(crate::document::Document::is_edited);
+    ui.add_enabled_ui(!edited, |ui| {
+        egui::ComboBox::from_id_salt("accel").selected_text(state.accel.name()).show_ui(ui, |ui| {
+            for kind in Kind::ALL {
+                ui.selectable_value(&mut state.accel, kind, kind.name());
+            }
+        });
     });
     ui.end_row();
 }
