@@ -54,7 +54,8 @@ impl App {
         if let Some(path) = &start.scene {
             inbox.open(path.clone(), &mut state);
         }
-        let (panels, viewport) = (Panels::default(), Viewport::default());
+        let (mut panels, viewport) = (Panels::default(), Viewport::default());
+        panels.closed = inbox.is_small();
         Self {
             state,
             panels,

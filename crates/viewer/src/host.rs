@@ -144,6 +144,11 @@ impl Page {
         js_sys::Reflect::get(&self.given, &name.into()).ok()?.dyn_into().ok()
     }
 
+    /// Whether there is little room: the panels are then closed at first.
+    pub fn is_small(&self) -> bool {
+        js_sys::Reflect::get(&self.given, &"small".into()).is_ok_and(|small| small.is_truthy())
+    }
+
     /// Says something where there is no picture.
     pub fn say(&self, text: &str) {
         if let Some(say) = self.function("say") {

@@ -78,6 +78,10 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
             panels.theme = theme;
             ui.ctx().set_theme(preference);
         }
+        let mut open = !panels.closed;
+        if ui.toggle_value(&mut open, "Panels").on_hover_text("At the sides").changed() {
+            panels.closed = !open;
+        }
         if ui.button("Keys").on_hover_text("F1").clicked() {
             panels.help = !panels.help;
         }
