@@ -18,6 +18,8 @@ pub mod tables;
 
 pub mod pack;
 
+pub mod draft;
+
 pub mod outline;
 
 pub mod memory;

@@ -143,8 +143,7 @@ impl Link {
         Self { news, teller, desk }
     }
 
-    /// Tells the tracer something. What drops the picture under way, or answers a click, ends its portion; what lies
-    /// under the pointer can wait so long.
+    /// Tells the tracer something.
     pub fn send(&self, command: Command) {
         self.desk.send(command);
         (self.teller.wake)();

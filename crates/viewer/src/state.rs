@@ -175,7 +175,10 @@ impl State {
 
     /// Reads the scene again; the view stays, and the last good scene until there is a better one.
     pub fn reload(&mut self) {
-        self.ask();
+        let prepare = PrepareOptions { accel: self.accel, ..PrepareOptions::default() };
+        if let Some(source) = &self.source {
+            self.link.open(source.clone(), prepare, self.document.is_none());
+        }
     }
 
     /// Reads the scene again because its files have changed, unless that would drop what was edited.
@@ -195,13 +198,6 @@ impl State {
             self.changed_outside();
         } else {
             self.open(source);
-        }
-    }
-
-    fn ask(&mut self) {
-        let prepare = PrepareOptions { accel: self.accel, ..PrepareOptions::default() };
-        if let Some(source) = &self.source {
-            self.link.open(source.clone(), prepare, self.document.is_none());
         }
     }
 
@@ -235,7 +231,7 @@ impl State {
             None => Navigator::new(camera, &bounds),
         });
         if let Some(raster) = &mut self.raster {
-            raster.load(&document.packed, &document.pictures, &document.style);
+            raster.load(&document.packed, document.draft.as_ref(), &document.pictures, &document.style);
             raster.hide(&self.hidden);
         }
         self.messages.clone_from(&document.messages);

@@ -1,5 +1,6 @@
 //! The view itself: what is drawn in it, and what a hand does there.
 
+use crate::gpu::Raster;
 use crate::panels::Panels;
 use crate::state::Mode;
 use crate::state::REST;
@@ -9,6 +10,10 @@ use eframe::egui::PointerButton;
 use eframe::egui::Rect;
 use eframe::egui::Response;
 use eframe::egui::Ui;
+use std::time::Duration;
+
+/// How long the view is still before a draft is made good.
+const STILL: Duration = Duration::from_millis(80);
 
 /// Radians that a point of dragging turns.
 const TURN: f64 = 0.008;
@@ -139,6 +144,11 @@ impl Viewport {
         {
             self.drawn = raster.draw(&camera, state.size, whole);
             (state.stale, self.over_traced) = (false, whole);
+        } else if let Some(raster) = state.raster.as_mut().filter(|_| state.moved.elapsed() >= STILL) {
+            self.drawn = raster.go_on().or(self.drawn);
+        }
+        if state.raster.as_ref().is_some_and(Raster::is_unfinished) {
+            ui.ctx().request_repaint();
         }
         let painter = ui.painter_at(rect);
         let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));

@@ -28,6 +28,7 @@ impl Desk {
         Self { commands, teller, interrupt }
     }
 
+    /// What drops the picture under way, or answers a click, ends the portion; what lies under the pointer can wait.
     pub fn send(&self, command: Command) {
         let at_once = !matches!(command, Command::Look(..));
         // A tracer that is gone has told why on the error stream.
