@@ -12,7 +12,7 @@ use wasm_bindgen_cli_support::Bindgen;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// What stands beside the program on the page as it is.
-const AS_IT_IS: [&str; 3] = ["index.html", "page.css", "page.js"];
+const AS_IT_IS: [&str; 4] = ["index.html", "page.css", "page.js", "tracer.js"];
 
 /// What `cargo xtask web` takes.
 #[derive(Debug, Args)]

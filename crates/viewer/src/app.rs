@@ -54,7 +54,8 @@ impl App {
         if let Some(path) = &start.scene {
             inbox.open(path.clone(), &mut state);
         }
-        let (panels, viewport) = (Panels::default(), Viewport::default());
+        let (mut panels, viewport) = (Panels::default(), Viewport::default());
+        panels.closed = inbox.is_small();
         Self {
             state,
             panels,
@@ -116,7 +117,7 @@ impl App {
             self.panels.help = !self.panels.help;
         }
         if pressed(Modifiers::NONE, Key::V) {
-            self.panels.alone = !self.panels.alone;
+            self.panels.closed = !self.panels.closed;
         }
         if pressed(Modifiers::NONE, Key::Escape) {
             self.panels.marking = false;

@@ -27,6 +27,8 @@ use dotray_render::trace::Tracer;
 use dotray_scene::Resolved;
 use dotray_scene::model;
 use rayon::prelude::*;
+use serde::Deserialize;
+use serde::Serialize;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -36,7 +38,7 @@ use std::time::Duration;
 use web_time::Instant;
 
 /// What is to be traced.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Request {
     /// Told apart from other requests by this number, which rises.
     pub serial: u64,
@@ -90,7 +92,7 @@ pub enum Reply {
 }
 
 /// What lies under a place of the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
     /// The shape.
     pub number: u32,

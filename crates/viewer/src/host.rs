@@ -1,9 +1,15 @@
 //! Where files go: back to where the scene came from, or, for pictures, where people keep theirs.
 
+use crate::bundle::Bundle;
 use crate::memory::Dropped;
+use crate::wire::Ask;
 use dotray_scene::Files;
 use dotray_scene::files::Disk;
+use std::io;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::Mutex;
+use std::sync::PoisonError;
 
 /// Where a scene's files come from and can be stored again.
 pub trait Home: Files + Send + Sync {
@@ -16,6 +22,11 @@ pub trait Home: Files + Send + Sync {
     /// Whether the file is still the one that was read.
     fn is_as_read(&self, path: &Path, read: &[u8]) -> bool {
         self.read(path).is_ok_and(|now| now == read)
+    }
+
+    /// Whether the tracer has these files without being sent them.
+    fn is_known_elsewhere(&self) -> bool {
+        false
     }
 }
 
@@ -32,6 +43,43 @@ impl Home for Dropped {
         save(path, bytes)?;
         self.add(path, bytes.to_vec());
         Ok(())
+    }
+}
+
+/// A scene that a program has sent, which stores its files where they came from.
+#[derive(Debug)]
+pub struct Served {
+    files: Bundle,
+    outgoing: Arc<Mutex<Vec<Ask>>>,
+}
+
+impl Served {
+    /// These files; what is to be stored is put where the other end is told.
+    pub fn new(files: Vec<(String, Vec<u8>)>, outgoing: Arc<Mutex<Vec<Ask>>>) -> Self {
+        Self { files: Bundle::new(files), outgoing }
+    }
+}
+
+impl Files for Served {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.files.read(path)
+    }
+
+    fn names_in(&self, folder: &Path) -> Vec<String> {
+        self.files.names_in(folder)
+    }
+}
+
+impl Home for Served {
+    fn store(&self, path: &Path, bytes: &[u8]) -> Result<(), String> {
+        self.files.add(path, bytes.to_vec());
+        let ask = Ask::Store(path.to_string_lossy().into_owned(), bytes.to_vec());
+        self.outgoing.lock().unwrap_or_else(PoisonError::into_inner).push(ask);
+        Ok(())
+    }
+
+    fn is_known_elsewhere(&self) -> bool {
+        true
     }
 }
 
@@ -94,6 +142,11 @@ impl Page {
     pub fn function(&self, name: &str) -> Option<js_sys::Function> {
         use wasm_bindgen::JsCast;
         js_sys::Reflect::get(&self.given, &name.into()).ok()?.dyn_into().ok()
+    }
+
+    /// Whether there is little room: the panels are then closed at first.
+    pub fn is_small(&self) -> bool {
+        js_sys::Reflect::get(&self.given, &"small".into()).is_ok_and(|small| small.is_truthy())
     }
 
     /// Says something where there is no picture.

@@ -24,11 +24,17 @@ pub mod outline;
 
 pub mod memory;
 
+pub mod bundle;
+
 pub mod document;
 
 pub mod rays;
 
 pub mod engine;
+
+pub mod wire;
+
+pub mod clerk;
 
 #[cfg(feature = "screen")]
 pub mod gpu;
@@ -61,4 +67,10 @@ pub mod report;
 pub mod app;
 
 #[cfg(all(feature = "screen", target_arch = "wasm32"))]
+pub mod worker;
+
+#[cfg(all(feature = "screen", target_arch = "wasm32"))]
 pub mod web;
+
+#[cfg(all(feature = "page", not(target_arch = "wasm32")))]
+pub mod serve;

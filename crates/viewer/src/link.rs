@@ -1,6 +1,6 @@
 //! Between the screen and the work: reading scenes and tracing go on elsewhere, and their news come by and by.
 
-#[cfg_attr(target_arch = "wasm32", path = "link/slices.rs")]
+#[cfg_attr(target_arch = "wasm32", path = "link/page.rs")]
 #[cfg_attr(not(target_arch = "wasm32"), path = "link/threads.rs")]
 mod desk;
 
@@ -15,6 +15,7 @@ use crate::host::Home;
 use dotray_render::PrepareOptions;
 use dotray_render::Textures;
 use dotray_render::World;
+use dotray_scene::Files;
 use dotray_scene::Resolved;
 use dotray_scene::Sources;
 use std::path::PathBuf;
@@ -33,7 +34,6 @@ pub struct Source {
 }
 
 /// What has come.
-#[derive(Debug)]
 pub enum News {
     /// A scene for the screen.
     Opened(Box<Document>),
@@ -41,6 +41,10 @@ pub enum News {
     Failed(Vec<Message>),
     /// The tracer has the scene, after so many seconds.
     Prepared(f64),
+    /// A scene that was sent from elsewhere, or has changed there.
+    Sent(Source),
+    /// Something that the user should know.
+    Notice(String),
     /// What the tracer tells.
     Reply(Reply),
 }
@@ -52,7 +56,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 struct Asked {
     source: Source,
     prepare: PrepareOptions,
-    /// Whether the screen shows no other one.
+    /// Whether nothing is on the screen: then the scene is shown even if its textures are faulty.
     first: bool,
     number: u64,
 }
@@ -77,8 +81,8 @@ impl Teller {
     }
 
     /// Reads the scene; what the tracer needs of it comes back.
-    fn read(&self, asked: &Asked) -> Option<(Resolved, Textures)> {
-        let opened = open(&asked.source.path, &*asked.source.files);
+    fn read(&self, asked: &Asked, files: &dyn Files) -> Option<(Resolved, Textures)> {
+        let opened = open(&asked.source.path, files);
         if !self.is_current(asked) {
             return None;
         }
@@ -89,7 +93,7 @@ impl Teller {
                 return None;
             }
         };
-        let textures = Textures::load(&resolved, &*asked.source.files, &asked.prepare);
+        let textures = Textures::load(&resolved, files, &asked.prepare);
         let textures = textures.map_err(|faults| messages(&faults, &document.sources));
         if !self.is_current(asked) {
             return None;

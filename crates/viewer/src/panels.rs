@@ -33,12 +33,12 @@ pub struct Panels {
     pub tab: Tab,
     /// Whether the keys are explained.
     pub help: bool,
-    /// Whether the panels beside the view are away.
-    pub alone: bool,
     /// Light, dark, or as the system has it.
     pub theme: Theme,
     /// Whether the next drag marks the part to trace.
     pub marking: bool,
+    /// Whether the panels at the sides are closed.
+    pub closed: bool,
     /// Whether the user wants to pick files.
     pub picking: bool,
     search: String,
@@ -56,18 +56,22 @@ impl Panels {
     pub fn show(&mut self, ui: &mut egui::Ui, state: &mut State) {
         egui::Panel::top("toolbar").show(ui, |ui| toolbar::show(self, ui, state));
         egui::Panel::bottom("status").show(ui, |ui| status::show(ui, state));
-        if !self.alone {
-            egui::Panel::left("scene").exact_size(300.0).show(ui, |ui| self.left(ui, state));
-            egui::Panel::right("tracing").exact_size(310.0).show(ui, |ui| {
-                tracing::show(self, ui, state);
-                ui.separator();
-                rays::show(ui, state);
-            });
+        if !self.closed {
+            self.sides(ui, state);
         }
         messages::show(self, ui, state);
         if self.help {
             toolbar::help(self, ui);
         }
+    }
+
+    fn sides(&mut self, ui: &mut egui::Ui, state: &mut State) {
+        egui::Panel::left("scene").exact_size(300.0).show(ui, |ui| self.left(ui, state));
+        egui::Panel::right("tracing").exact_size(310.0).show(ui, |ui| {
+            tracing::show(self, ui, state);
+            ui.separator();
+            rays::show(ui, state);
+        });
     }
 
     /// Stores the traced picture under the name that stands in its field.

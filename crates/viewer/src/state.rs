@@ -191,6 +191,16 @@ impl State {
         }
     }
 
+    /// A scene that another program has sent: another one, or the same after a change.
+    fn sent(&mut self, source: Source) {
+        if self.source.as_ref().is_some_and(|old| old.path == source.path) {
+            self.source = Some(source);
+            self.changed_outside();
+        } else {
+            self.open(source);
+        }
+    }
+
     /// Takes what has come; answers whether a scene was among it.
     pub fn take_news(&mut self, ctx: &egui::Context) -> bool {
         let mut any = false;
@@ -202,6 +212,8 @@ impl State {
                 }
                 News::Failed(messages) => self.messages = messages,
                 News::Prepared(_) => self.prepared_now(),
+                News::Sent(source) => self.sent(source),
+                News::Notice(sentence) => self.notice = sentence,
                 News::Reply(reply) => self.reply(reply, ctx),
             }
         }

@@ -66,6 +66,11 @@ impl Inbox {
         self.watch = Watch::new(paths, self.wake.clone());
     }
 
+    /// A window has room.
+    pub fn is_small(&self) -> bool {
+        false
+    }
+
     /// There is no list to pick from.
     pub fn pick(&self) {}
 }

@@ -1,6 +1,7 @@
 //! Scenes on a page: dropped or picked, read by the browser by and by, and never sent anywhere.
 
 use crate::document::Document;
+use crate::host::Page;
 use crate::link::Source;
 use crate::link::Wake;
 use crate::memory::Dropped;
@@ -38,9 +39,30 @@ pub struct Inbox {
 }
 
 impl Inbox {
-    /// Nothing has come yet.
+    /// What the page was given at its start.
     pub fn new(wake: Wake) -> Self {
-        Self { wake, arrivals: Rc::default() }
+        let inbox = Self { wake, arrivals: Rc::default() };
+        if let Ok(page) = Page::find() {
+            inbox.take_given(&page);
+        }
+        inbox
+    }
+
+    /// Takes the files of the page's `files`: pairs of a name and bytes.
+    fn take_given(&self, page: &Page) {
+        let files = js_sys::Reflect::get(&page.given, &"files".into()).ok();
+        let Some(files) = files.and_then(|files| files.dyn_into::<js_sys::Array>().ok()) else { return };
+        let mut arrivals = self.arrivals.borrow_mut();
+        for file in files.iter().filter_map(|pair| pair.dyn_into::<js_sys::Array>().ok()) {
+            let Some(name) = file.get(0).as_string() else { continue };
+            arrivals.files.add(Path::new(&name), js_sys::Uint8Array::new(&file.get(1)).to_vec());
+            arrivals.fresh.push(PathBuf::from(name));
+        }
+    }
+
+    /// Whether there is little room.
+    pub fn is_small(&self) -> bool {
+        Page::find().is_ok_and(|page| page.is_small())
     }
 
     /// A page is given no names.

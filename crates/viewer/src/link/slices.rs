@@ -1,4 +1,4 @@
-//! Work on a page, which has one thread: slices of it, whenever the screen asks for news.
+//! Tracing on the page's one thread.
 
 use super::Asked;
 use super::News;
@@ -11,83 +11,42 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use web_time::Instant;
 
-/// What is left of a scene that is read. Between the steps the screen is drawn, so that it shows what goes on.
-enum Step {
-    Read(Asked),
-    Build(Box<(Asked, Resolved, Textures)>),
-}
-
 /// See the module.
-pub struct Desk {
+#[derive(Default)]
+pub struct Slices {
     engine: Engine,
-    teller: Teller,
     commands: RefCell<VecDeque<Command>>,
-    /// The step under way, once the screen has been drawn since it came up.
-    next: Option<Step>,
-    drawn_since: bool,
+    /// A scene that was read and has to be built, after it was drawn.
+    unbuilt: Option<Box<(Asked, Resolved, Textures)>>,
 }
 
-impl Desk {
-    pub fn new(teller: Teller) -> Self {
-        Self {
-            engine: Engine::default(),
-            teller,
-            commands: RefCell::default(),
-            next: None,
-            drawn_since: false,
-        }
-    }
-
+impl Slices {
     pub fn send(&self, command: Command) {
         self.commands.borrow_mut().push_back(command);
     }
 
-    /// A scene that was asked for before is not read any more.
-    pub fn open(&mut self, asked: Asked) {
-        self.begin(Step::Read(asked));
+    pub fn read(&mut self, asked: Asked, teller: &Teller) {
+        let read = teller.read(&asked, &*asked.source.files);
+        self.unbuilt = read.map(|(resolved, textures)| Box::new((asked, resolved, textures)));
     }
 
-    fn begin(&mut self, step: Step) {
-        (self.next, self.drawn_since) = (Some(step), false);
-        (self.teller.wake)();
-    }
-
-    /// One step of a scene, or else as many commands as there are and one portion of tracing.
-    pub fn work(&mut self) {
-        if self.next.is_some() && !std::mem::replace(&mut self.drawn_since, true) {
-            (self.teller.wake)();
-        } else if let Some(step) = self.next.take() {
-            self.step(step);
+    /// All commands and one portion of tracing.
+    pub fn work(&mut self, teller: &Teller) {
+        if let Some(parts) = self.unbuilt.take() {
+            let (asked, resolved, textures) = *parts;
+            let start = Instant::now();
+            if let Some(world) = teller.build(&asked, resolved, textures) {
+                self.send(Command::World(Some(world)));
+                teller.tell(News::Prepared(start.elapsed().as_secs_f64()));
+            }
         }
         let commands = std::mem::take(&mut *self.commands.borrow_mut());
         for command in commands {
-            for reply in self.engine.handle(command) {
-                self.teller.tell(News::Reply(reply));
-            }
+            self.engine.handle(command).into_iter().for_each(|reply| teller.tell(News::Reply(reply)));
         }
         if self.engine.is_busy() {
-            if let Some(reply) = self.engine.advance() {
-                self.teller.tell(News::Reply(reply));
-            }
-            (self.teller.wake)();
-        }
-    }
-
-    fn step(&mut self, step: Step) {
-        match step {
-            Step::Read(asked) => {
-                if let Some((resolved, textures)) = self.teller.read(&asked) {
-                    self.begin(Step::Build(Box::new((asked, resolved, textures))));
-                }
-            }
-            Step::Build(parts) => {
-                let (asked, resolved, textures) = *parts;
-                let start = Instant::now();
-                if let Some(world) = self.teller.build(&asked, resolved, textures) {
-                    self.commands.borrow_mut().push_back(Command::World(Some(world)));
-                    self.teller.tell(News::Prepared(start.elapsed().as_secs_f64()));
-                }
-            }
+            self.engine.advance().into_iter().for_each(|reply| teller.tell(News::Reply(reply)));
+            (teller.wake)();
         }
     }
 }

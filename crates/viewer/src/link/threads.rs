@@ -41,7 +41,7 @@ impl Desk {
     pub fn open(&mut self, asked: Asked) {
         let (teller, commands) = (self.teller.clone(), self.commands.clone());
         std::thread::spawn(move || {
-            let Some((resolved, textures)) = teller.read(&asked) else { return };
+            let Some((resolved, textures)) = teller.read(&asked, &*asked.source.files) else { return };
             let start = web_time::Instant::now();
             if let Some(world) = teller.build(&asked, resolved, textures) {
                 let _ = commands.send(Command::World(Some(world)));

@@ -78,7 +78,10 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
             panels.theme = theme;
             ui.ctx().set_theme(preference);
         }
-        ui.toggle_value(&mut panels.alone, "View alone").on_hover_text("Without the panels beside it (V)");
+        let mut open = !panels.closed;
+        if ui.toggle_value(&mut open, "Panels").on_hover_text("At the sides (V)").changed() {
+            panels.closed = !open;
+        }
         if ui.button("Keys").on_hover_text("F1").clicked() {
             panels.help = !panels.help;
         }
@@ -141,7 +144,7 @@ const KEYS: [(&str, &str); 19] = [
     ("I", "show the selection alone"),
     ("G", "mark the part to trace with the next drag"),
     ("Ctrl + S", "save the traced picture"),
-    ("V", "the view alone, without the panels beside it"),
+    ("V", "close and open the panels at the sides"),
     ("Escape", "select nothing"),
     ("F1", "this list"),
 ];
