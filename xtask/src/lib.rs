@@ -1,4 +1,4 @@
-//! Chores of the project. There is one: `cargo xtask bench` measures dotray beside its peers.
+//! Chores of the project: `cargo xtask bench` measures dotray beside its peers, `cargo xtask web` builds the page.
 //!
 //! The order of the `mod` lines is the floor order: a module uses only modules listed above it.
 
@@ -45,6 +45,8 @@ mod report;
 mod instructions;
 
 pub mod bench;
+
+pub mod web;
 
 use std::process::ExitCode;
 

@@ -17,6 +17,8 @@ struct Cli {
 enum Chore {
     /// Measure dotray beside its peers: pictures, rays, builds, reading.
     Bench(xtask::bench::BenchArgs),
+    /// Build the page: rayview for browsers.
+    Web(xtask::web::WebArgs),
     /// Run a command as the only child of this process and print its cost as JSON.
     #[command(hide = true)]
     Measure {
@@ -42,6 +44,7 @@ fn measure(command: &[String], log: &std::path::Path, limit: f64) -> Result<(), 
 fn main() -> ExitCode {
     xtask::ended(match Cli::parse().chore {
         Chore::Bench(arguments) => xtask::bench::run(&arguments),
+        Chore::Web(arguments) => xtask::web::run(&arguments),
         Chore::Measure { log, limit, command } => measure(&command, &log, limit),
     })
 }

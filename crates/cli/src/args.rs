@@ -168,6 +168,14 @@ pub struct ViewArgs {
     /// Trace at once.
     #[arg(long)]
     pub traced: bool,
+
+    /// Open no window: serve a page on 127.0.0.1 that shows the same, for machines without a display.
+    #[arg(long, conflicts_with = "traced")]
+    pub serve: bool,
+
+    /// The port of the page; 0 for one that is free.
+    #[arg(long, value_name = "PORT", requires = "serve")]
+    pub port: Option<u16>,
 }
 
 /// `dotray convert`.

@@ -41,6 +41,8 @@ fn the_one_beside_comes_before_the_one_on_the_path() {
     plant(&bin, "beside", 0);
     let out = view(&bin, &other, &["--traced", "--", "-a.ray"]);
     assert_eq!((out.status.code(), &*out.stdout), (Some(0), &b"beside --traced -- -a.ray\n"[..]));
+    let out = view(&bin, &other, &["--serve", "--port", "8000", "a.ray"]);
+    assert_eq!((out.status.code(), &*out.stdout), (Some(0), &b"beside --serve --port 8000 -- a.ray\n"[..]));
 
     plant(&bin, "beside", 3);
     assert_eq!(view(&bin, &other, &["a.ray"]).status.code(), Some(1));

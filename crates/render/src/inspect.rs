@@ -14,6 +14,7 @@ use dotray_geometry::Vec3;
 
 /// Why a ray was sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RayKind {
     /// From the camera.
     Eye,
@@ -130,6 +131,7 @@ pub enum Branch {
 
 /// Why no ray was sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum End {
     /// The recursion limit was reached.
     Limit,

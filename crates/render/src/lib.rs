@@ -79,7 +79,7 @@ pub use layer_film::{LayerFilm, develop_layers, layer_band, render_layers};
 pub use layers::{Layer, LayerPicture};
 pub use observer::{Observer, Progress, Silent};
 pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};
-pub use picture::Picture;
+pub use picture::{Parts, Picture};
 pub use query::{Crossing, Nearest};
 pub use stats::{MemoryPart, Stats};
 pub use threads::on_threads;

@@ -6,6 +6,7 @@ use dotray_accel::Quality;
 
 /// How a pixel's colour is sampled (SPEC 3 and 4).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Antialias {
     /// One ray through the pixel's centre.
     #[default]
@@ -28,6 +29,7 @@ impl Antialias {
 
 /// What lies between a point and a light (SPEC 6, S_i).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shadows {
     /// Each surface crossed multiplies by kTrans · M_S.
     #[default]
@@ -40,6 +42,7 @@ pub enum Shadows {
 
 /// How a texture is read between its texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum TextureFilter {
     /// Between the centres of the four texels around.
     #[default]
@@ -50,6 +53,7 @@ pub enum TextureFilter {
 
 /// In which order a picture comes into being.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Order {
     /// Tile by tile along a Morton curve, which keeps caches warm.
     #[default]
@@ -61,6 +65,7 @@ pub enum Order {
 
 /// A part of the picture: pixels counted from the upper left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Crop {
     /// The first column.
     pub x: u32,
@@ -74,6 +79,7 @@ pub struct Crop {
 
 /// What the picture depends on besides the scene, and how it is computed.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Options {
     /// Columns of the whole picture.
     pub width: u32,

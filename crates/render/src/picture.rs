@@ -49,6 +49,13 @@ use dotray_geometry::Vec4;
 pub struct Picture<'a> {
     world: &'a World,
     options: &'a Options,
+    parts: Parts,
+}
+
+/// What a picture is made of besides its world and its options: to be kept where those cannot stay borrowed, and to go
+/// on with later.
+#[derive(Debug)]
+pub struct Parts {
     camera: Camera,
     tiles: Vec<Tile>,
     /// Of the two, the one is used whose samples the picture has.
@@ -111,8 +118,19 @@ impl<'a> Picture<'a> {
     pub fn new(world: &'a World, options: &'a Options) -> Result<Self, RenderError> {
         options.validate()?;
         let camera = Camera::new(&world.camera, options.width, options.height);
-        let tiles = tiles(options);
-        Ok(Self { world, options, camera, tiles, opaque: Borders::default(), covered: Borders::default() })
+        let (tiles, opaque, covered) = (tiles(options), Borders::default(), Borders::default());
+        Ok(Self::of(world, options, Parts { camera, tiles, opaque, covered }))
+    }
+
+    /// A picture of these parts, which were taken from one of the same world, seen by the same camera, and of the same
+    /// options.
+    pub fn of(world: &'a World, options: &'a Options, parts: Parts) -> Self {
+        Self { world, options, parts }
+    }
+
+    /// Its parts, so that another picture can go on with them.
+    pub fn into_parts(self) -> Parts {
+        self.parts
     }
 
     /// The world that it shows.
@@ -127,7 +145,7 @@ impl<'a> Picture<'a> {
 
     /// Its tiles by number, along a Morton curve. They depend on size, crop and tile size alone.
     pub fn tiles(&self) -> &[Tile] {
-        &self.tiles
+        &self.parts.tiles
     }
 
     /// A film for its tiles, all missing.
@@ -144,9 +162,9 @@ impl<'a> Picture<'a> {
     /// May panic where the tile is not one of this picture's.
     pub fn tile(&self, tile: &Tile, observer: &dyn Observer) -> Option<TilePixels> {
         if self.options.transparent {
-            self.compute(tile, &self.covered, observer)
+            self.compute(tile, &self.parts.covered, observer)
         } else {
-            self.compute(tile, &self.opaque, observer)
+            self.compute(tile, &self.parts.opaque, observer)
         }
     }
 
@@ -207,7 +225,7 @@ impl<'a> Picture<'a> {
         let mut colors = Vec::new();
         for pixels in block.pixels().chunks(at_once) {
             let places = sampler::grid_places(pixels, n);
-            let rays: Vec<Ray> = places.iter().map(|&(x, y)| self.camera.ray(x, y)).collect();
+            let rays: Vec<Ray> = places.iter().map(|&(x, y)| self.parts.camera.ray(x, y)).collect();
             let traced = T::trace(tracer, &rays);
             if tracer.is_stopped() {
                 return None;
@@ -232,8 +250,10 @@ impl<'a> Picture<'a> {
         let on_border = |p: &LatticePoint| p.x == left || p.x == right || p.y == low || p.y == high;
         let observer = tracer.observer();
         let mut trace = |points: &[LatticePoint]| {
-            let rays: Vec<Ray> =
-                points.iter().map(|p| self.camera.ray(p.x as f64 * scale, p.y as f64 * scale)).collect();
+            let rays: Vec<Ray> = points
+                .iter()
+                .map(|p| self.parts.camera.ray(p.x as f64 * scale, p.y as f64 * scale))
+                .collect();
             let colors = T::trace(tracer, &rays);
             (!tracer.is_stopped()).then_some(colors)
         };
@@ -262,7 +282,7 @@ impl<'a> Picture<'a> {
             for column in 0..squares(tile.width) {
                 let x = tile.x + middle(column, tile.width);
                 let from_below = self.options.height - 1 - (tile.y + middle(row, tile.height));
-                rays.push(self.camera.ray(f64::from(x) + 0.5, f64::from(from_below) + 0.5));
+                rays.push(self.parts.camera.ray(f64::from(x) + 0.5, f64::from(from_below) + 0.5));
             }
         }
         let colors = T::trace(&mut tracer, &rays);

@@ -69,7 +69,7 @@ impl Rendering {
 }
 
 /// The edges of the squares of the looks before the picture itself, for [`Order::CoarseToFine`].
-const COARSE_STEPS: [u32; 2] = [16, 4];
+pub const COARSE_STEPS: [u32; 2] = [16, 4];
 
 /// Computes the tiles that a film lacks, unless the observer cancels it; others may look at the film meanwhile.
 ///

@@ -21,6 +21,7 @@ pub type Color = Vec3;
 
 /// `#camera`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Camera {
     /// The eye.
     pub position: Vec3,
@@ -34,6 +35,7 @@ pub struct Camera {
 
 /// 1 / (constant + linear d + quadratic d²).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Attenuation {
     /// ca
     pub constant: f64,
@@ -45,6 +47,7 @@ pub struct Attenuation {
 
 /// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Light {
     /// `#light_point`
     Point {

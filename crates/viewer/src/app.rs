@@ -1,14 +1,12 @@
-//! The application: panels, view, keys, files that are dropped or change.
+//! The application: panels, view, keys, scenes that come in.
 
 use crate::gpu::Raster;
+use crate::inbox::Inbox;
 use crate::link::Link;
-use crate::link::Source;
 use crate::panels::Panels;
 use crate::state::Mode;
 use crate::state::State;
 use crate::viewport::Viewport;
-use crate::watch::Watch;
-use dotray_scene::files::Disk;
 use eframe::CreationContext;
 use eframe::egui;
 use eframe::egui::Key;
@@ -25,10 +23,11 @@ pub struct App {
     state: State,
     panels: Panels,
     viewport: Viewport,
-    wake: crate::link::Wake,
+    inbox: Inbox,
     /// Since when keys that lead the camera are held, and no other.
     held_since: Option<Instant>,
-    watch: Option<Watch>,
+    #[cfg(target_arch = "wasm32")]
+    report: crate::report::Report,
 }
 
 /// What is asked for at the start.
@@ -51,54 +50,21 @@ impl App {
         state.raster = creation.wgpu_render_state.as_ref().map(Raster::new);
         state.mode = if start.traced { Mode::Traced } else { Mode::Preview };
         state.trace_at_rest = start.trace_at_rest;
+        let mut inbox = Inbox::new(wake);
         if let Some(path) = &start.scene {
-            state.open(Source { path: path.clone(), files: Arc::new(Disk) });
+            inbox.open(path.clone(), &mut state);
         }
-        let (panels, viewport) = (Panels::default(), Viewport::default());
-        Self { state, panels, viewport, wake, held_since: None, watch: None }
-    }
-
-    /// Files that were dropped on the window.
-    fn take_dropped(&mut self, ctx: &egui::Context) {
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        if let Some(path) = dropped.first().map(|file| file.path().to_path_buf()) {
-            self.state.open(Source { path, files: Arc::new(Disk) });
-            self.watch = None;
+        let (mut panels, viewport) = (Panels::default(), Viewport::default());
+        panels.closed = inbox.is_small();
+        Self {
+            state,
+            panels,
+            viewport,
+            inbox,
+            held_since: None,
+            #[cfg(target_arch = "wasm32")]
+            report: crate::report::Report::default(),
         }
-    }
-
-    /// Reads the scene again when its files change.
-    fn follow_files(&mut self, ctx: &egui::Context) {
-        let Some(source) = &self.state.source else { return };
-        if self.watch.is_none() {
-            self.watch = Watch::new([source.path.as_path()], self.wake.clone());
-        }
-        match self.watch.as_mut().map(Watch::changed) {
-            Some(Ok(true)) => {
-                let edited = self.state.document.as_ref().is_some_and(crate::document::Document::is_edited);
-                if edited {
-                    let what =
-                        "the file has changed on the disk; Undo all reads it and drops what was edited here";
-                    self.state.notice = what.to_owned();
-                } else {
-                    self.state.reload();
-                }
-            }
-            Some(Err(wait)) => ctx.request_repaint_after(wait),
-            Some(Ok(false)) | None => {}
-        }
-    }
-
-    /// Watches what the scene turned out to be made of.
-    fn watch_all(&mut self) {
-        let Some(document) = &self.state.document else { return };
-        let sources = (0..document.sources.len() as u32).map(dotray_scene::span::FileId);
-        let textures = document.style.textures.iter().flat_map(|texture| &texture.candidates);
-        let paths: Vec<&std::path::Path> = sources
-            .map(|file| document.sources.path(file))
-            .chain(textures.map(std::path::PathBuf::as_path).filter(|path| path.is_file()))
-            .collect();
-        self.watch = Watch::new(paths, self.wake.clone());
     }
 
     fn keys(&mut self, ctx: &egui::Context) {
@@ -150,6 +116,9 @@ impl App {
         if pressed(Modifiers::NONE, Key::F1) {
             self.panels.help = !self.panels.help;
         }
+        if pressed(Modifiers::NONE, Key::V) {
+            self.panels.closed = !self.panels.closed;
+        }
         if pressed(Modifiers::NONE, Key::Escape) {
             self.panels.marking = false;
             state.clear_selection();
@@ -199,14 +168,18 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        self.take_dropped(&ctx);
-        self.follow_files(&ctx);
+        self.inbox.look(&ctx, &mut self.state);
         let opened = self.state.take_news(&ctx);
-        if opened {
-            self.watch_all();
+        if let Some(document) = self.state.document.as_ref().filter(|_| opened) {
+            self.inbox.opened(document);
+        }
+        if std::mem::take(&mut self.panels.picking) {
+            self.inbox.pick();
         }
         self.keys(&ctx);
         self.panels.show(ui, &mut self.state);
         self.viewport.show(ui, &mut self.state, &mut self.panels);
+        #[cfg(target_arch = "wasm32")]
+        self.report.tell(&self.state, self.viewport.rect());
     }
 }

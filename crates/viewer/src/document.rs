@@ -1,6 +1,7 @@
 //! A scene that was read for the screen: its text, its tree, its shapes for the GPU, and its materials and lights as
 //! they are edited.
 
+use crate::draft::draft;
 use crate::edit::Change;
 use crate::edit::EditError;
 use crate::edit::changed;
@@ -70,6 +71,8 @@ pub struct Document {
     pub outline: Outline,
     /// The shapes for the GPU.
     pub packed: Packed,
+    /// The same with few shapes, where there are very many.
+    pub draft: Option<Packed>,
     /// The textures for the GPU.
     pub pictures: Pictures,
     /// Warnings.
@@ -108,12 +111,14 @@ pub fn open(path: &Path, files: &dyn Files) -> Result<Opened, Vec<Message>> {
     let Some(resolved) = resolved else { return Err(messages) };
     let files_now: Vec<SceneFile> = resolved.files.iter().map(skeleton).collect();
     let style = style_of(&files_now).map_err(|_| messages.clone())?;
+    let packed = Packed::new(&resolved);
     let document = Document {
         path: path.to_owned(),
         dialect,
         camera: resolved.camera,
         outline: Outline::new(&resolved),
-        packed: Packed::new(&resolved),
+        draft: draft(&packed),
+        packed,
         pictures: Pictures::load(&resolved.textures, files),
         messages,
         shape_count: resolved.shape_count,

@@ -1,10 +1,12 @@
 //! The rasteriser: a scene's buffers on the GPU, drawn into a picture of its own when the view changes, not when the
-//! window is drawn.
+//! window is drawn. A driver in software draws a scene of very many shapes as a draft first, and all of them part by
+//! part once the view rests, so that the window never waits.
 
 mod pipelines;
 
+mod held;
+
 use crate::hidden::Hidden;
-use crate::pack::Batch;
 use crate::pack::Packed;
 use crate::pictures::Pictures;
 use crate::rays::Line;
@@ -16,42 +18,20 @@ use dotray_scene::model::Camera;
 use eframe::egui;
 use eframe::wgpu;
 use egui_wgpu::RenderState;
+use held::HeldShapes;
+use held::vertex_buffer;
 use pipelines::Pipelines;
 use std::ops::Range;
+use web_time::Duration;
+use web_time::Instant;
 use wgpu::util::DeviceExt;
-
-/// One buffer of things, and which of them are shown.
-#[derive(Debug)]
-struct Held {
-    buffer: wgpu::Buffer,
-    numbers: Vec<u32>,
-    shown: Vec<Range<u32>>,
-}
-
-impl Held {
-    fn all<T: bytemuck::Pod>(device: &wgpu::Device, batches: &[Batch<T>]) -> Vec<Self> {
-        let held = |batch: &Batch<T>| Self {
-            buffer: vertex_buffer(device, bytemuck::cast_slice(&batch.things)),
-            numbers: batch.numbers.clone(),
-            shown: Hidden::default().shown(&batch.numbers),
-        };
-        batches.iter().map(held).collect()
-    }
-}
-
-fn vertex_buffer(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
-    let usage = wgpu::BufferUsages::VERTEX;
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-}
 
 /// The scene on the GPU.
 #[derive(Debug)]
 struct Loaded {
     frame: ViewFrame,
-    balls: Vec<Held>,
-    rounds: Vec<Held>,
-    boxes: Vec<Held>,
-    triangles: Vec<Held>,
+    shapes: HeldShapes,
+    draft: Option<HeldShapes>,
     pictures: wgpu::TextureView,
     bind_group: wgpu::BindGroup,
     light_count: u32,
@@ -59,7 +39,7 @@ struct Loaded {
     background: Vec3,
 }
 
-/// The picture that is drawn into.
+/// A picture that is drawn into.
 struct Target {
     size: [u32; 2],
     color: wgpu::TextureView,
@@ -75,6 +55,15 @@ pub struct Raster {
     loaded: Option<Loaded>,
     lines: Option<(wgpu::Buffer, u32)>,
     target: Option<Target>,
+    /// What drafts are drawn into.
+    rough: Option<Target>,
+    /// Whether many shapes take this driver long.
+    slow: bool,
+    /// How many things of the picture are drawn; `None` where it is finished.
+    drawn: Option<u64>,
+    /// How many are drawn at a time, and when that was done last.
+    portion: u64,
+    last_portion: Option<Instant>,
 }
 
 /// The numbers of the shader's `View`.
@@ -92,6 +81,12 @@ struct Uniforms {
 /// The near plane, in parts of the scene's size.
 const NEAR: f64 = 1e-5;
 
+/// So many things are drawn at a time at first, and at least.
+const PORTIONS: Range<u64> = 2048..1 << 15;
+
+/// How long a portion should take: the window waits for it.
+const PORTION_TIME: Range<Duration> = Duration::from_millis(40)..Duration::from_millis(90);
+
 impl Raster {
     /// Builds what does not depend on the scene.
     pub fn new(state: &RenderState) -> Self {
@@ -102,10 +97,22 @@ impl Raster {
             mapped_at_creation: false,
         });
         let pipelines = Pipelines::new(&state.device);
-        Self { state: state.clone(), pipelines, uniforms, loaded: None, lines: None, target: None }
+        Self {
+            state: state.clone(),
+            pipelines,
+            uniforms,
+            loaded: None,
+            lines: None,
+            target: None,
+            rough: None,
+            slow: state.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+            drawn: None,
+            portion: PORTIONS.end,
+            last_portion: None,
+        }
     }
 
-    /// The device and the interface that draw, as people read them.
+    /// The device, the interface and the driver that draw, as people read them.
     pub fn device_name(&self) -> String {
         let info = self.state.adapter.get_info();
         let kind = match info.device_type {
@@ -114,20 +121,29 @@ impl Raster {
             wgpu::DeviceType::VirtualGpu => "virtual GPU",
             wgpu::DeviceType::Other => "device",
         };
-        format!("{} · {kind} · {:?}", info.name, info.backend)
+        let backend = match info.backend {
+            wgpu::Backend::Gl => "OpenGL".to_owned(),
+            wgpu::Backend::BrowserWebGpu => "WebGPU".to_owned(),
+            other @ (wgpu::Backend::Noop
+            | wgpu::Backend::Vulkan
+            | wgpu::Backend::Metal
+            | wgpu::Backend::Dx12) => format!("{other:?}"),
+        };
+        let driver =
+            Some(info.driver_info.trim()).filter(|driver| !driver.is_empty() && *driver != info.name);
+        let parts = [Some(info.name.as_str()), Some(kind), Some(backend.as_str()), driver];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
     }
 
-    /// Takes a scene.
-    pub fn load(&mut self, packed: &Packed, pictures: &Pictures, style: &Resolved) {
+    /// Takes a scene, and its draft where it has one.
+    pub fn load(&mut self, packed: &Packed, draft: Option<&Packed>, pictures: &Pictures, style: &Resolved) {
         let device = &self.state.device;
         let pictures = self.picture_layers(pictures);
         let bind_group = self.tables(&packed.frame, style, &pictures);
         self.loaded = Some(Loaded {
             frame: packed.frame,
-            balls: Held::all(device, &packed.balls),
-            rounds: Held::all(device, &packed.rounds),
-            boxes: Held::all(device, &packed.boxes),
-            triangles: Held::all(device, &packed.triangles),
+            shapes: HeldShapes::new(device, packed),
+            draft: draft.filter(|_| self.slow).map(|draft| HeldShapes::new(device, draft)),
             pictures,
             bind_group,
             light_count: style.lights.len() as u32,
@@ -150,9 +166,8 @@ impl Raster {
     /// Takes which shapes are shown.
     pub fn hide(&mut self, hidden: &Hidden) {
         if let Some(loaded) = &mut self.loaded {
-            for list in [&mut loaded.balls, &mut loaded.rounds, &mut loaded.boxes, &mut loaded.triangles] {
-                list.iter_mut().for_each(|held| held.shown = hidden.shown(&held.numbers));
-            }
+            loaded.shapes.hide(hidden);
+            loaded.draft.iter_mut().for_each(|draft| draft.hide(hidden));
         }
     }
 
@@ -173,40 +188,91 @@ impl Raster {
             .then(|| (vertex_buffer(&self.state.device, bytemuck::cast_slice(&ends)), ends.len() as u32));
     }
 
-    /// Draws the scene into a picture of this size, or the lines alone over nothing.
+    /// Draws the scene into a picture of this size, or the lines alone over nothing. It may be a draft: see
+    /// [`Raster::go_on`].
     pub fn draw(&mut self, camera: &Camera, size: [u32; 2], lines_only: bool) -> Option<egui::TextureId> {
         let most = self.state.device.limits().max_texture_dimension_2d;
         let size = size.map(|edge| edge.clamp(1, most));
-        self.fit(size);
-        let (loaded, target) = (self.loaded.as_ref()?, self.target.as_ref()?);
+        fit(&self.state, &mut self.target, size);
+        let loaded = self.loaded.as_ref()?;
         let uniforms = uniforms(loaded, camera, size);
         self.state.queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(&uniforms));
-        let [r, g, b] = loaded.background.to_array().map(|x| x.clamp(0.0, 1.0));
-        let clear = if lines_only { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } };
+        (self.drawn, self.last_portion) = (None, None);
+        if lines_only {
+            self.paint(self.target.as_ref()?, None, Some(wgpu::Color::TRANSPARENT), true);
+        } else if let Some(draft) = &loaded.draft {
+            fit(&self.state, &mut self.rough, size.map(|edge| edge.div_ceil(2)));
+            let rough = self.rough.as_ref()?;
+            self.paint(rough, Some((draft, 0..draft.count())), Some(loaded.clear()), true);
+            self.drawn = Some(0);
+            return Some(rough.id);
+        } else {
+            let all = 0..loaded.shapes.count();
+            self.paint(self.target.as_ref()?, Some((&loaded.shapes, all)), Some(loaded.clear()), true);
+        }
+        self.target.as_ref().map(|target| target.id)
+    }
+
+    /// Whether what was drawn last is a draft.
+    pub fn is_unfinished(&self) -> bool {
+        self.drawn.is_some()
+    }
+
+    /// Draws a portion of what a draft stands for; at the end, answers with the whole picture.
+    pub fn go_on(&mut self) -> Option<egui::TextureId> {
+        let (loaded, from) = self.loaded.as_ref().zip(self.drawn)?;
+        let now = Instant::now();
+        if let Some(last) = self.last_portion.replace(now) {
+            let took = now.duration_since(last);
+            if took > PORTION_TIME.end {
+                self.portion = (self.portion / 2).max(PORTIONS.start);
+            } else if took < PORTION_TIME.start {
+                self.portion = self.portion.saturating_mul(2);
+            }
+        }
+        let count = loaded.shapes.count();
+        let to = count.min(from.saturating_add(self.portion));
+        let clear = (from == 0).then(|| loaded.clear());
+        let target = self.target.as_ref()?;
+        self.paint(target, Some((&loaded.shapes, from..to)), clear, to == count);
+        self.drawn = (to < count).then_some(to);
+        (to == count).then_some(target.id)
+    }
+
+    /// Draws some shapes into a picture, which is cleared before, and lines over them.
+    fn paint(
+        &self,
+        target: &Target,
+        shapes: Option<(&HeldShapes, Range<u64>)>,
+        clear: Option<wgpu::Color>,
+        lines: bool,
+    ) {
+        let Some(loaded) = &self.loaded else { return };
+        let store = wgpu::StoreOp::Store;
+        let color = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
+        let depth = clear.map_or(wgpu::LoadOp::Load, |_| wgpu::LoadOp::Clear(0.0));
         let mut encoder = self.state.device.create_command_encoder(&Default::default());
         {
-            let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store };
-            let depth = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("scene"),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                     view: &target.color,
                     depth_slice: None,
                     resolve_target: None,
-                    ops,
+                    ops: wgpu::Operations { load: color, store },
                 })],
                 depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                     view: &target.depth,
-                    depth_ops: Some(depth),
+                    depth_ops: Some(wgpu::Operations { load: depth, store }),
                     stencil_ops: None,
                 }),
                 ..Default::default()
             });
             pass.set_bind_group(0, &loaded.bind_group, &[]);
-            if !lines_only {
-                self.draw_shapes(loaded, &mut pass);
+            if let Some((shapes, part)) = shapes {
+                shapes.draw(&self.pipelines, &mut pass, &part);
             }
-            if let Some((buffer, count)) = &self.lines {
+            if let Some((buffer, count)) = self.lines.as_ref().filter(|_| lines) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 for pipeline in [&self.pipelines.faint_lines, &self.pipelines.lines] {
                     pass.set_pipeline(pipeline);
@@ -215,62 +281,44 @@ impl Raster {
             }
         }
         self.state.queue.submit([encoder.finish()]);
-        Some(target.id)
     }
 
-    fn draw_shapes(&self, loaded: &Loaded, pass: &mut wgpu::RenderPass<'_>) {
-        let instanced = [
-            (&self.pipelines.balls, &loaded.balls, 4),
-            (&self.pipelines.solids, &loaded.rounds, 4),
-            (&self.pipelines.boxes, &loaded.boxes, 18),
-        ];
-        for (pipeline, list, vertices) in instanced {
-            for held in list.iter().filter(|held| !held.shown.is_empty()) {
-                pass.set_pipeline(pipeline);
-                pass.set_vertex_buffer(0, held.buffer.slice(..));
-                held.shown.iter().for_each(|range| pass.draw(0..vertices, range.clone()));
-            }
-        }
-        for held in loaded.triangles.iter().filter(|held| !held.shown.is_empty()) {
-            pass.set_pipeline(&self.pipelines.triangles);
-            pass.set_vertex_buffer(0, held.buffer.slice(..));
-            held.shown.iter().for_each(|range| pass.draw(3 * range.start..3 * range.end, 0..1));
-        }
+    /// Waits until what was asked for is drawn; only those who measure need to.
+    pub fn finish(&self) {
+        // A device that is lost has nothing left to do.
+        let _ = self.state.device.poll(wgpu::PollType::wait_indefinitely());
     }
 
-    /// Makes the target this large.
-    fn fit(&mut self, size: [u32; 2]) {
-        if self.target.as_ref().is_some_and(|target| target.size == size) {
-            return;
-        }
-        let device = &self.state.device;
-        let texture = |format, usage| {
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("scene"),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
-            });
-            texture.create_view(&wgpu::TextureViewDescriptor::default())
-        };
-        let color = texture(pipelines::COLOR, wgpu::TextureUsages::TEXTURE_BINDING);
-        let depth = texture(pipelines::DEPTH, wgpu::TextureUsages::empty());
-        let mut renderer = self.state.renderer.write();
-        if let Some(old) = self.target.take() {
-            renderer.free_texture(&old.id);
-        }
-        let id = renderer.register_native_texture(device, &color, wgpu::FilterMode::Nearest);
-        self.target = Some(Target { size, color, depth, id });
+    /// The picture that was drawn last, for those without a window: its size, and red, green, blue, alpha from the
+    /// upper left.
+    pub fn pixels(&self) -> Option<([u32; 2], Vec<u8>)> {
+        let target = self.target.as_ref()?;
+        let [width, height] = target.size;
+        let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = self.state.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(row) * u64::from(height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.state.device.create_command_encoder(&Default::default());
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        encoder.copy_texture_to_buffer(target.color.texture().as_image_copy(), to, size);
+        self.state.queue.submit([encoder.finish()]);
+        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+        self.finish();
+        let mapped = buffer.slice(..).get_mapped_range().ok()?;
+        let rows = mapped.chunks_exact(row as usize).flat_map(|line| line.iter().take(4 * width as usize));
+        Some((target.size, rows.copied().collect()))
     }
 
     fn tables(&self, frame: &ViewFrame, style: &Resolved, pictures: &wgpu::TextureView) -> wgpu::BindGroup {
         let device = &self.state.device;
         let materials = self.table(tables::materials(&style.materials));
-        let lights = self.table(tables::lights(&style.lights, frame));
+        let lights = self.table(tables::lights(&style.lights, &style.tints, frame));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("scene"),
@@ -327,6 +375,42 @@ impl Raster {
         let order = wgpu::util::TextureDataOrder::LayerMajor;
         self.state.device.create_texture_with_data(&self.state.queue, &descriptor, order, texels)
     }
+}
+
+impl Loaded {
+    fn clear(&self) -> wgpu::Color {
+        let [r, g, b] = self.background.to_array().map(|x| x.clamp(0.0, 1.0));
+        wgpu::Color { r, g, b, a: 1.0 }
+    }
+}
+
+/// Makes a target this large.
+fn fit(state: &RenderState, target: &mut Option<Target>, size: [u32; 2]) {
+    if target.as_ref().is_some_and(|target| target.size == size) {
+        return;
+    }
+    let texture = |format, usage| {
+        let texture = state.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("scene"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+            view_formats: &[],
+        });
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    };
+    let color =
+        texture(pipelines::COLOR, wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC);
+    let depth = texture(pipelines::DEPTH, wgpu::TextureUsages::empty());
+    let mut renderer = state.renderer.write();
+    if let Some(old) = target.take() {
+        renderer.free_texture(&old.id);
+    }
+    let id = renderer.register_native_texture(&state.device, &color, wgpu::FilterMode::Nearest);
+    *target = Some(Target { size, color, depth, id });
 }
 
 fn uniforms(loaded: &Loaded, camera: &Camera, size: [u32; 2]) -> Uniforms {

@@ -18,27 +18,41 @@ pub mod tables;
 
 pub mod pack;
 
+pub mod draft;
+
 pub mod outline;
+
+pub mod memory;
+
+pub mod bundle;
 
 pub mod document;
 
 pub mod rays;
 
-pub mod passes;
-
 pub mod engine;
+
+pub mod wire;
+
+pub mod clerk;
 
 #[cfg(feature = "screen")]
 pub mod gpu;
 
 #[cfg(feature = "screen")]
-pub mod link;
-
-#[cfg(feature = "screen")]
 pub mod host;
 
 #[cfg(feature = "screen")]
+pub mod link;
+
+#[cfg(feature = "screen")]
 pub mod state;
+
+#[cfg(all(feature = "screen", not(target_arch = "wasm32")))]
+pub mod watch;
+
+#[cfg(feature = "screen")]
+pub mod inbox;
 
 #[cfg(feature = "screen")]
 pub mod panels;
@@ -46,8 +60,17 @@ pub mod panels;
 #[cfg(feature = "screen")]
 pub mod viewport;
 
-#[cfg(feature = "screen")]
-pub mod watch;
+#[cfg(all(feature = "screen", target_arch = "wasm32"))]
+pub mod report;
 
 #[cfg(feature = "screen")]
 pub mod app;
+
+#[cfg(all(feature = "screen", target_arch = "wasm32"))]
+pub mod worker;
+
+#[cfg(all(feature = "screen", target_arch = "wasm32"))]
+pub mod web;
+
+#[cfg(all(feature = "page", not(target_arch = "wasm32")))]
+pub mod serve;

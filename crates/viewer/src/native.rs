@@ -19,6 +19,12 @@ struct Args {
     /// Trace whenever the camera has come to rest.
     #[arg(long)]
     trace_at_rest: bool,
+    /// Open no window: serve a page on 127.0.0.1 that shows the same, for machines without a display.
+    #[arg(long)]
+    serve: bool,
+    /// The port of the page; 0 for one that is free.
+    #[arg(long, value_name = "PORT", default_value_t = 0, requires = "serve")]
+    port: u16,
     /// The window's size in points.
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = window_size)]
     window: [f32; 2],
@@ -32,9 +38,30 @@ fn window_size(text: &str) -> Result<[f32; 2], String> {
         .ok_or_else(|| "expected such as 1280x800, at least 100x100".to_owned())
 }
 
+#[cfg(feature = "page")]
+fn serve(scene: Option<PathBuf>, port: u16) -> Result<(), String> {
+    rayview::serve::run(scene, port)
+}
+
+#[cfg(not(feature = "page"))]
+fn serve(_: Option<PathBuf>, _: u16) -> Result<(), String> {
+    Err("this rayview was built without its page, and serves none; in a checkout of dotray, \
+         `cargo xtask web` builds the page, and `cargo install --path crates/viewer --features page` a rayview with it"
+        .to_owned())
+}
+
 /// Opens it.
 pub fn main() -> ExitCode {
     let args = Args::parse();
+    if args.serve {
+        return match serve(args.scene, args.port) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(sentence) => {
+                eprintln!("rayview: {sentence}");
+                ExitCode::FAILURE
+            }
+        };
+    }
     let title =
         args.scene.as_ref().map_or("rayview".to_owned(), |path| format!("{} – rayview", path.display()));
     let options = eframe::NativeOptions {
@@ -50,7 +77,7 @@ pub fn main() -> ExitCode {
         Err(error) => {
             eprintln!("rayview: cannot open a window: {error}");
             eprintln!(
-                "rayview: without a display, `Xvfb` gives one; without a GPU, Mesa's software drivers do"
+                "rayview: without a display, `rayview --serve` shows the same in a browser, and `Xvfb` gives one; without a GPU, Mesa's software drivers do"
             );
             ExitCode::FAILURE
         }

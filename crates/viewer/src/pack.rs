@@ -36,6 +36,8 @@ pub struct Solid {
     pub material: u32,
     /// Which unit shape: see [`Unit`].
     pub unit: u32,
+    /// The radii of what is round about y, below and above, the greater one 1.
+    pub radii: [f32; 2],
 }
 
 /// The unit shapes, each within -1 to 1 on all axes.
@@ -44,16 +46,12 @@ pub struct Solid {
 pub enum Unit {
     /// A sphere.
     Sphere = 0,
-    /// A cylinder along y.
-    Cylinder = 1,
-    /// A cone along y, apex up.
-    Cone = 2,
-    /// A cylinder without discs.
-    OpenCylinder = 3,
-    /// A cone without its disc.
-    OpenCone = 4,
+    /// Round about y, with discs: a cylinder, or a cone whole or truncated.
+    Round = 1,
+    /// The same without discs.
+    Open = 2,
     /// A box.
-    Cuboid = 5,
+    Cuboid = 3,
 }
 
 /// A corner of a triangle.
@@ -161,34 +159,42 @@ impl Packed {
                 put(&mut self.balls, placed.number, Ball { place, material: placed.material });
             }
             (Shape::Sphere(sphere), Some(_) | None) => {
-                self.solid(Unit::Sphere, sphere.center(), Vec3::splat(sphere.radius()), placed);
+                self.solid(Unit::Sphere, sphere.center(), Vec3::splat(sphere.radius()), [1.0; 2], placed);
             }
             (Shape::Cuboid(cuboid), _) => {
-                self.solid(Unit::Cuboid, cuboid.center(), cuboid.size() / 2.0, placed);
+                self.solid(Unit::Cuboid, cuboid.center(), cuboid.size() / 2.0, [1.0; 2], placed);
             }
-            (Shape::Cylinder(c) | Shape::Open(OpenSide::Cylinder(c)), _) => {
-                let open = matches!(shape, Shape::Open(_));
-                let unit = if open { Unit::OpenCylinder } else { Unit::Cylinder };
-                self.solid(unit, c.center(), Vec3::new(c.radius(), c.height() / 2.0, c.radius()), placed);
+            (Shape::Cylinder(c), _) => {
+                self.round(Unit::Round, c.center(), c.height(), [c.radius(); 2], placed);
             }
-            (Shape::Cone(c) | Shape::Open(OpenSide::Cone(c)), _) => {
-                let open = matches!(shape, Shape::Open(_));
-                let unit = if open { Unit::OpenCone } else { Unit::Cone };
-                self.solid(unit, c.center(), Vec3::new(c.radius(), c.height() / 2.0, c.radius()), placed);
+            (Shape::Cone(c), _) => {
+                self.round(Unit::Round, c.center(), c.height(), [c.radius(), c.top()], placed);
+            }
+            (Shape::Open(OpenSide::Cylinder(c)), _) => {
+                self.round(Unit::Open, c.center(), c.height(), [c.radius(); 2], placed);
+            }
+            (Shape::Open(OpenSide::Cone(c)), _) => {
+                self.round(Unit::Open, c.center(), c.height(), [c.radius(), c.top()], placed);
             }
             (Shape::Triangle(triangle), _) => self.triangle(triangle, placed),
             (Shape::Torus(torus), _) => self.torus(torus, placed),
         }
     }
 
-    fn solid(&mut self, unit: Unit, center: Vec3, half: Vec3, placed: &Placed<'_>) {
+    fn round(&mut self, unit: Unit, center: Vec3, height: f64, radii: [f64; 2], placed: &Placed<'_>) {
+        let widest = radii[0].max(radii[1]);
+        let half = Vec3::new(widest, height / 2.0, widest);
+        self.solid(unit, center, half, radii.map(|radius| (radius / widest) as f32), placed);
+    }
+
+    fn solid(&mut self, unit: Unit, center: Vec3, half: Vec3, radii: [f32; 2], placed: &Placed<'_>) {
         let object_from_unit = Affine::from_mat3_translation(Mat3::from_diagonal(half), center);
         let world_from_unit = placed.frame.world_from_object * object_from_unit;
         let m = world_from_unit.matrix3 * self.frame.unit.recip();
         let t = self.frame.point(world_from_unit.translation);
         let row = |at: usize, t: f64| m.row(at).extend(t).to_array().map(|x| x as f32);
         let rows = [row(0, t.x), row(1, t.y), row(2, t.z)];
-        let solid = Solid { rows, material: placed.material, unit: unit as u32 };
+        let solid = Solid { rows, material: placed.material, unit: unit as u32, radii };
         let list = if unit == Unit::Cuboid { &mut self.boxes } else { &mut self.rounds };
         put(list, placed.number, solid);
     }

@@ -37,9 +37,15 @@ pub struct Panels {
     pub theme: Theme,
     /// Whether the next drag marks the part to trace.
     pub marking: bool,
+    /// Whether the panels at the sides are closed.
+    pub closed: bool,
+    /// Whether the user wants to pick files.
+    pub picking: bool,
     search: String,
     found: Option<(String, Vec<u32>)>,
     picture_name: String,
+    /// The scene that this name was made for.
+    picture_of: Option<std::path::PathBuf>,
     scroll_to: Option<usize>,
     messages_hidden: bool,
     last_selected: Option<u32>,
@@ -50,16 +56,22 @@ impl Panels {
     pub fn show(&mut self, ui: &mut egui::Ui, state: &mut State) {
         egui::Panel::top("toolbar").show(ui, |ui| toolbar::show(self, ui, state));
         egui::Panel::bottom("status").show(ui, |ui| status::show(ui, state));
+        if !self.closed {
+            self.sides(ui, state);
+        }
+        messages::show(self, ui, state);
+        if self.help {
+            toolbar::help(self, ui);
+        }
+    }
+
+    fn sides(&mut self, ui: &mut egui::Ui, state: &mut State) {
         egui::Panel::left("scene").exact_size(300.0).show(ui, |ui| self.left(ui, state));
         egui::Panel::right("tracing").exact_size(310.0).show(ui, |ui| {
             tracing::show(self, ui, state);
             ui.separator();
             rays::show(ui, state);
         });
-        messages::show(self, ui, state);
-        if self.help {
-            toolbar::help(self, ui);
-        }
     }
 
     /// Stores the traced picture under the name that stands in its field.

@@ -7,9 +7,11 @@ use dotray_render::inspect::LightTerm;
 use dotray_render::inspect::RayKind;
 use dotray_render::inspect::RayNode;
 use dotray_render::inspect::Shadow;
+use serde::Deserialize;
+use serde::Serialize;
 
 /// A ray of the tree.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RayRow {
     /// Why it was sent.
     pub kind: RayKind,
@@ -40,7 +42,7 @@ pub struct RayRow {
 }
 
 /// A light at the end of a ray, its samples taken together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightRow {
     /// Its number.
     pub light: u32,

@@ -166,28 +166,38 @@ impl State {
 
     /// Reads another scene.
     pub fn open(&mut self, source: Source) {
-        (self.document, self.navigator) = (None, None);
+        (self.document, self.navigator, self.prepared) = (None, None, false);
         self.hidden.clear();
+        self.drop_picture();
         self.source = Some(source);
         self.reload();
     }
 
-    /// Reads the scene again; the view stays.
+    /// Reads the scene again; the view stays, and the last good scene until there is a better one.
     pub fn reload(&mut self) {
-        self.ask(true);
-    }
-
-    /// Has the tracer's tree built again.
-    pub fn rebuild(&mut self) {
-        self.ask(false);
-    }
-
-    fn ask(&mut self, screen: bool) {
-        self.prepared = false;
-        let screen = screen || self.document.is_none();
         let prepare = PrepareOptions { accel: self.accel, ..PrepareOptions::default() };
         if let Some(source) = &self.source {
-            self.link.open(source.clone(), prepare, screen);
+            self.link.open(source.clone(), prepare, self.document.is_none());
+        }
+    }
+
+    /// Reads the scene again because its files have changed, unless that would drop what was edited.
+    pub fn changed_outside(&mut self) {
+        if self.document.as_ref().is_some_and(Document::is_edited) {
+            let what = "the file has changed on the disk; Undo all reads it and drops what was edited here";
+            self.notice = what.to_owned();
+        } else {
+            self.reload();
+        }
+    }
+
+    /// A scene that another program has sent: another one, or the same after a change.
+    fn sent(&mut self, source: Source) {
+        if self.source.as_ref().is_some_and(|old| old.path == source.path) {
+            self.source = Some(source);
+            self.changed_outside();
+        } else {
+            self.open(source);
         }
     }
 
@@ -202,6 +212,8 @@ impl State {
                 }
                 News::Failed(messages) => self.messages = messages,
                 News::Prepared(_) => self.prepared_now(),
+                News::Sent(source) => self.sent(source),
+                News::Notice(sentence) => self.notice = sentence,
                 News::Reply(reply) => self.reply(reply, ctx),
             }
         }
@@ -210,16 +222,23 @@ impl State {
 
     fn opened(&mut self, document: Document) {
         let (camera, bounds) = (document.camera, document.packed.bounds);
+        // Numbers of shapes mean other shapes where shapes came or went.
+        if self.document.as_ref().is_some_and(|old| old.shape_count != document.shape_count) {
+            self.hidden.clear();
+        }
         self.navigator = Some(match self.navigator {
             Some(navigator) => navigator.moved_to(camera, &bounds),
             None => Navigator::new(camera, &bounds),
         });
         if let Some(raster) = &mut self.raster {
-            raster.load(&document.packed, &document.pictures, &document.style);
+            raster.load(&document.packed, document.draft.as_ref(), &document.pictures, &document.style);
             raster.hide(&self.hidden);
         }
         self.messages.clone_from(&document.messages);
-        (self.rays, self.selection, self.hovered, self.traced) = (None, None, None, None);
+        (self.rays, self.selection, self.hovered) = (None, None, None);
+        // The tracer has another scene until it tells that it has this one.
+        self.prepared = false;
+        self.drop_picture();
         self.document = Some(document);
         self.stale = true;
     }
@@ -290,11 +309,15 @@ impl State {
 
     /// Drops the traced picture, and begins another where it is to be seen at once.
     pub fn restart(&mut self) {
-        if self.traced.take().is_some() {
-            self.link.send(Command::Stop);
-        }
+        self.drop_picture();
         if self.mode == Mode::Traced {
             self.start_tracing();
+        }
+    }
+
+    fn drop_picture(&mut self) {
+        if self.traced.take().is_some() {
+            self.link.send(Command::Stop);
         }
     }
 

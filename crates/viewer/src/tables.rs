@@ -3,10 +3,14 @@
 use dotray_geometry::Vec3;
 use dotray_scene::model::Attenuation;
 use dotray_scene::model::Light;
+use dotray_scene::model::Tint;
 use dotray_scene::resolved::ResolvedMaterial;
 
-/// Texels a material or a light takes.
-pub const TEXELS: usize = 4;
+/// Texels a material takes.
+pub const MATERIAL_TEXELS: usize = 4;
+
+/// Texels a light takes.
+pub const LIGHT_TEXELS: usize = 7;
 
 /// Texels a row of the table has.
 pub const WIDTH: usize = 1024;
@@ -33,7 +37,7 @@ fn texel(v: Vec3, w: f64) -> [f32; 4] {
     v.extend(w).to_array().map(|x| x.clamp(-1e30, 1e30) as f32)
 }
 
-/// The materials, each of [`TEXELS`] texels.
+/// The materials, each of [`MATERIAL_TEXELS`] texels.
 pub fn materials(materials: &[ResolvedMaterial]) -> Vec<[f32; 4]> {
     let row = |material: &ResolvedMaterial| {
         let texture = material.texture.map_or(-1.0, f64::from);
@@ -47,8 +51,9 @@ pub fn materials(materials: &[ResolvedMaterial]) -> Vec<[f32; 4]> {
     materials.iter().flat_map(row).collect()
 }
 
-/// The lights, each of [`TEXELS`] texels: colour and kind; place and cosine of the cut-off; axis and exponent; fading.
-pub fn lights(lights: &[Light], frame: &ViewFrame) -> Vec<[f32; 4]> {
+/// The lights, each of [`LIGHT_TEXELS`] texels: colour and kind; place and cosine of the cut-off; axis and exponent;
+/// fading; what M_A, M_D and M_S reflect of its colour.
+pub fn lights(lights: &[Light], tints: &[Tint], frame: &ViewFrame) -> Vec<[f32; 4]> {
     let fading = |a: &Attenuation| texel(Vec3::new(a.constant, a.linear, a.quadratic), 0.0);
     let none = [1.0, 0.0, 0.0, 0.0];
     let row = |light: &Light| match light {
@@ -69,7 +74,9 @@ pub fn lights(lights: &[Light], frame: &ViewFrame) -> Vec<[f32; 4]> {
             [texel(*color, 3.0), place, texel(direction.normalize(), 0.0), fading(attenuation)]
         }
     };
-    lights.iter().flat_map(row).collect()
+    let tints = tints.iter().chain(std::iter::repeat(&Tint::PLAIN));
+    let tinted = |tint: &Tint| [tint.ambient, tint.diffuse, tint.specular].map(|color| texel(color, 0.0));
+    lights.iter().zip(tints).flat_map(|(light, tint)| row(light).into_iter().chain(tinted(tint))).collect()
 }
 
 /// Fills the last row of a table, at least one.
@@ -95,8 +102,9 @@ mod tests {
             cutoff: 0.5,
             dropoff: 0.25,
         };
-        let table = lights(&[light], &frame);
-        assert_eq!(table.len(), TEXELS);
+        let table = lights(&[light], &[], &frame);
+        assert_eq!(table.len(), LIGHT_TEXELS);
+        assert_eq!(table[4..], [[0.0; 4], [1.0, 1.0, 1.0, 0.0], [1.0, 1.0, 1.0, 0.0]]);
         assert_eq!(table[1], [2.0, 0.0, 0.0, libm::cos(0.5) as f32]);
         assert_eq!((table[2], table[3]), ([0.0, 1.0, 0.0, 32.0], [1.0, 2.0, 3.0, 0.0]));
         assert_eq!(padded(table).len(), WIDTH);

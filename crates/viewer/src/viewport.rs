@@ -1,5 +1,6 @@
 //! The view itself: what is drawn in it, and what a hand does there.
 
+use crate::gpu::Raster;
 use crate::panels::Panels;
 use crate::state::Mode;
 use crate::state::REST;
@@ -9,6 +10,10 @@ use eframe::egui::PointerButton;
 use eframe::egui::Rect;
 use eframe::egui::Response;
 use eframe::egui::Ui;
+use std::time::Duration;
+
+/// How long the view is still before a draft is made good.
+const STILL: Duration = Duration::from_millis(80);
 
 /// Radians that a point of dragging turns.
 const TURN: f64 = 0.008;
@@ -24,6 +29,8 @@ pub struct Viewport {
     drawn: Option<egui::TextureId>,
     /// Whether that was drawn for a traced picture.
     over_traced: bool,
+    /// Where it was drawn last.
+    rect: Option<Rect>,
 }
 
 impl Viewport {
@@ -37,6 +44,7 @@ impl Viewport {
             state.size = size;
             state.moved();
         }
+        self.rect = Some(rect);
         let response = ui.allocate_rect(rect, egui::Sense::click_and_drag());
         if state.document.is_some() {
             self.lead(ui, state, panels, &response, rect);
@@ -57,6 +65,11 @@ impl Viewport {
         }
     }
 
+    /// Where in the window it was drawn last.
+    pub fn rect(&self) -> Option<Rect> {
+        self.rect
+    }
+
     fn lead(&mut self, ui: &Ui, state: &mut State, panels: &mut Panels, response: &Response, rect: Rect) {
         let pixels_per_point = ui.ctx().pixels_per_point();
         let in_pixels = |p: egui::Pos2| {
@@ -64,7 +77,7 @@ impl Viewport {
             (f64::from(offset.x), f64::from(offset.y))
         };
         if panels.marking {
-            self.mark(ui, state, panels, response, rect);
+            self.mark(ui, state, panels, rect);
             return;
         }
         drag(ui, state, response, rect.height());
@@ -101,23 +114,38 @@ impl Viewport {
         }
     }
 
-    fn mark(&mut self, ui: &Ui, state: &mut State, panels: &mut Panels, response: &Response, rect: Rect) {
-        if response.drag_started() {
-            self.corner = response.interact_pointer_pos();
+    /// Follows the button itself, not what became of it by the end of a frame: frames may be slow, hands are not.
+    fn mark(&mut self, ui: &Ui, state: &mut State, panels: &mut Panels, rect: Rect) {
+        let mut ended = None;
+        ui.input(|input| {
+            for event in &input.events {
+                let egui::Event::PointerButton { pos, button: PointerButton::Primary, pressed, .. } = event
+                else {
+                    continue;
+                };
+                if !pressed {
+                    ended = self.corner.take().map(|corner| Rect::from_two_pos(corner, *pos)).or(ended);
+                } else if rect.contains(*pos) {
+                    self.corner = Some(*pos);
+                }
+            }
+        });
+        let at = ui.input(|input| input.pointer.latest_pos());
+        if let Some((corner, at)) = self.corner.zip(at) {
+            frame(ui, Rect::from_two_pos(corner, at).intersect(rect));
         }
-        let (Some(corner), Some(at)) = (self.corner, response.interact_pointer_pos()) else { return };
-        frame(ui, Rect::from_two_pos(corner, at));
-        if response.drag_stopped() {
-            let part = |p: egui::Pos2| {
-                let offset = p - rect.min;
-                [f64::from(offset.x / rect.width()), f64::from(offset.y / rect.height())]
-            };
-            let ([ax, ay], [bx, by]) = (part(corner), part(at));
-            state.region = Some([ax.min(bx), ay.min(by), ax.max(bx), ay.max(by)]);
-            (self.corner, panels.marking) = (None, false);
-            state.mode = Mode::Traced;
-            state.restart();
-        }
+        let Some(marked) = ended.map(|marked| marked.intersect(rect)).filter(Rect::is_positive) else {
+            return;
+        };
+        let part = |p: egui::Pos2| {
+            let offset = p - rect.min;
+            [f64::from(offset.x / rect.width()), f64::from(offset.y / rect.height())]
+        };
+        let ([left, top], [right, bottom]) = (part(marked.min), part(marked.max));
+        state.region = Some([left, top, right, bottom]);
+        panels.marking = false;
+        state.mode = Mode::Traced;
+        state.restart();
     }
 
     /// The scene, the traced picture over it as far as there is one, and lines over that.
@@ -131,6 +159,11 @@ impl Viewport {
         {
             self.drawn = raster.draw(&camera, state.size, whole);
             (state.stale, self.over_traced) = (false, whole);
+        } else if let Some(raster) = state.raster.as_mut().filter(|_| state.moved.elapsed() >= STILL) {
+            self.drawn = raster.go_on().or(self.drawn);
+        }
+        if state.raster.as_ref().is_some_and(Raster::is_unfinished) {
+            ui.ctx().request_repaint();
         }
         let painter = ui.painter_at(rect);
         let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));

@@ -2,6 +2,7 @@
 //! CI). Needs Xvfb, xdotool and ImageMagick's `import`; without them it says so and passes, unless
 //! `RAYVIEW_SCREEN=required`.
 
+#[allow(dead_code, reason = "another test file uses the rest")]
 mod desk;
 
 use desk::Desk;

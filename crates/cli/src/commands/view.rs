@@ -1,4 +1,4 @@
-//! `dotray view`: the scene in a window, by the program rayview.
+//! `dotray view`: the scene in a window or on a page, by the program rayview.
 
 use crate::args::ViewArgs;
 use crate::exit::Failure;
@@ -12,6 +12,12 @@ pub fn run(typed: &ViewArgs) -> Result<(), Failure> {
     let mut command = Command::new(&program);
     if typed.traced {
         command.arg("--traced");
+    }
+    if typed.serve {
+        command.arg("--serve");
+    }
+    if let Some(port) = typed.port {
+        command.arg("--port").arg(port.to_string());
     }
     // A name that begins with a dash is a name all the same.
     match command.arg("--").arg(&typed.scene).status() {

@@ -71,7 +71,9 @@ impl Pipelines {
             over: false,
             depth: wgpu::CompareFunction::Greater,
         };
-        let rows = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Uint32, 4 => Uint32];
+        let rows = wgpu::vertex_attr_array![
+            0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Uint32, 4 => Uint32, 5 => Float32x2
+        ];
         let solid = Kind {
             vertex: "solid_vertex",
             fragment: "solid_fragment",

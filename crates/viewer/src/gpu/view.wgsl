@@ -47,8 +47,7 @@ fn ray_at(place: vec2<f32>) -> vec3<f32> {
 
 // ---- shading
 
-fn row_of(table: texture_2d<f32>, number: u32, part: u32) -> vec4<f32> {
-    let texel = number * 4u + part;
+fn row_of(table: texture_2d<f32>, texel: u32) -> vec4<f32> {
     return textureLoad(table, vec2<u32>(texel % view.counts.y, texel / view.counts.y), 0);
 }
 
@@ -62,20 +61,20 @@ fn shade(point: vec3<f32>, ray: vec3<f32>, outward: vec3<f32>, st: vec2<f32>, ma
     let d = normalize(ray);
     var n = normalize(outward);
     if (dot(n, d) > 0.0) { n = -n; }
-    let ambient = row_of(materials, material, 0u);
-    let diffuse = row_of(materials, material, 1u);
-    let specular = row_of(materials, material, 2u);
-    let emissive = row_of(materials, material, 3u);
+    let ambient = row_of(materials, material * 4u + 0u);
+    let diffuse = row_of(materials, material * 4u + 1u);
+    let specular = row_of(materials, material * 4u + 2u);
+    let emissive = row_of(materials, material * 4u + 3u);
     let layer = max(i32(diffuse.w), 0);
     var texel = textureSampleLevel(pictures, picture_sampler, st, layer, 0.0).rgb;
     if (diffuse.w < 0.0) { texel = vec3<f32>(1.0); }
     var color = emissive.rgb + ambient.rgb * view.ambient.rgb * texel;
     let mirrored = reflect(d, n);
     for (var i = 0u; i < view.counts.x; i++) {
-        let head = row_of(lights, i, 0u);
-        let place = row_of(lights, i, 1u);
-        let axis = row_of(lights, i, 2u);
-        let fading = row_of(lights, i, 3u);
+        let head = row_of(lights, i * 7u + 0u);
+        let place = row_of(lights, i * 7u + 1u);
+        let axis = row_of(lights, i * 7u + 2u);
+        let fading = row_of(lights, i * 7u + 3u);
         var towards = -axis.xyz;
         var strength = 1.0;
         if (head.w != 2.0) {
@@ -91,10 +90,13 @@ fn shade(point: vec3<f32>, ray: vec3<f32>, outward: vec3<f32>, st: vec2<f32>, ma
             }
             if (head.w == 3.0 && cosine <= 0.0) { strength = 0.0; }
         }
+        let tint = row_of(lights, i * 7u + 4u).rgb;
+        if (strength > 0.0) { color += head.rgb * strength * ambient.rgb * tint * texel; }
         let facing = dot(n, towards);
         if (facing > 0.0 && strength > 0.0) {
             let highlight = power(max(dot(mirrored, towards), 0.0), ambient.w);
-            color += head.rgb * strength * (diffuse.rgb * texel * facing + specular.rgb * highlight);
+            let scattered = diffuse.rgb * texel * facing * row_of(lights, i * 7u + 5u).rgb;
+            color += head.rgb * strength * (scattered + specular.rgb * highlight * row_of(lights, i * 7u + 6u).rgb);
         }
     }
     if (emissive.w > 0.0) { color *= texel; }
@@ -184,6 +186,8 @@ struct Solid {
     @location(2) @interpolate(flat, either) y: vec4<f32>,
     @location(3) @interpolate(flat, either) z: vec4<f32>,
     @location(4) @interpolate(flat, either) which: vec2<u32>,
+    // Below and above.
+    @location(5) @interpolate(flat, either) radii: vec2<f32>,
 }
 
 @vertex
@@ -194,6 +198,7 @@ fn solid_vertex(
     @location(2) z: vec4<f32>,
     @location(3) material: u32,
     @location(4) unit: u32,
+    @location(5) radii: vec2<f32>,
 ) -> Solid {
     var low = vec2<f32>(1.0);
     var high = vec2<f32>(-1.0);
@@ -230,6 +235,7 @@ fn solid_vertex(
     out.y = vec4<f32>(ry, dot(ry, eye));
     out.z = vec4<f32>(rz, dot(rz, eye));
     out.which = vec2<u32>(material, unit);
+    out.radii = radii;
     return out;
 }
 
@@ -248,19 +254,16 @@ fn nearer(best: Meeting, t: f32, low: f32, counts: bool, face: u32) -> Meeting {
     return next;
 }
 
-fn meet(o: vec3<f32>, d: vec3<f32>, low: f32, unit: u32) -> Meeting {
+// Units: 0 is a sphere, 1 is round about y with discs, 2 without.
+fn meet(o: vec3<f32>, d: vec3<f32>, low: f32, unit: u32, radii: vec2<f32>) -> Meeting {
     var best = Meeting(NEVER, 0u);
-    // The radius at height y is e + f y.
-    let cone = unit == 2u || unit == 4u;
-    var e = vec2<f32>(1.0, 0.0);
-    if (cone) { e = vec2<f32>((1.0 - o.y) * 0.5, -d.y * 0.5); }
-    var a = dot(d.xz, d.xz);
-    var b = dot(o.xz, d.xz);
+    // The radius at the ray's place t is e.x + e.y t.
+    let slope = (radii.y - radii.x) * 0.5;
+    var e = vec2<f32>((radii.x + radii.y) * 0.5 + slope * o.y, slope * d.y);
+    if (unit == 0u) { e = vec2<f32>(1.0, 0.0); }
+    var a = dot(d.xz, d.xz) - e.y * e.y;
+    var b = dot(o.xz, d.xz) - e.x * e.y;
     var c = dot(o.xz, o.xz) - e.x * e.x;
-    if (cone) {
-        a -= e.y * e.y;
-        b -= e.x * e.y;
-    }
     if (unit == 0u) {
         a += d.y * d.y;
         b += o.y * d.y;
@@ -268,37 +271,35 @@ fn meet(o: vec3<f32>, d: vec3<f32>, low: f32, unit: u32) -> Meeting {
     }
     let root = b * b - a * c;
     if (root >= 0.0) {
-        // Both roots without cancellation; a double cone's other half lies above y = 1.
+        // Both roots without cancellation; where the radius is below 0, y is beyond -1 to 1.
         let q = -(b + select(-1.0, 1.0, b >= 0.0) * sqrt(root));
         let t0 = q / a;
         let t1 = c / q;
         best = nearer(best, t0, low, unit == 0u || abs(o.y + d.y * t0) <= 1.0, 0u);
         best = nearer(best, t1, low, unit == 0u || abs(o.y + d.y * t1) <= 1.0, 0u);
     }
-    if (unit == 1u || unit == 2u) {
-        let bottom = (-1.0 - o.y) / d.y;
-        let at = o.xz + d.xz * bottom;
-        best = nearer(best, bottom, low, dot(at, at) <= 1.0, 2u);
-    }
     if (unit == 1u) {
+        let bottom = (-1.0 - o.y) / d.y;
+        let below = o.xz + d.xz * bottom;
+        best = nearer(best, bottom, low, dot(below, below) <= radii.x * radii.x, 2u);
         let top = (1.0 - o.y) / d.y;
-        let at = o.xz + d.xz * top;
-        best = nearer(best, top, low, dot(at, at) <= 1.0, 1u);
+        let above = o.xz + d.xz * top;
+        best = nearer(best, top, low, radii.y > 0.0 && dot(above, above) <= radii.y * radii.y, 1u);
     }
     return best;
 }
 
-fn unit_normal(p: vec3<f32>, unit: u32, face: u32) -> vec3<f32> {
+fn unit_normal(p: vec3<f32>, unit: u32, face: u32, radii: vec2<f32>) -> vec3<f32> {
     if (face == 1u) { return vec3<f32>(0.0, 1.0, 0.0); }
     if (face == 2u) { return vec3<f32>(0.0, -1.0, 0.0); }
     if (unit == 0u) { return p; }
-    if (unit == 1u || unit == 3u) { return vec3<f32>(p.x, 0.0, p.z); }
-    return vec3<f32>(p.x, (1.0 - p.y) * 0.25, p.z);
+    let slope = (radii.y - radii.x) * 0.5;
+    return vec3<f32>(p.x, -slope * ((radii.x + radii.y) * 0.5 + slope * p.y), p.z);
 }
 
-fn unit_texture(p: vec3<f32>, unit: u32, face: u32) -> vec2<f32> {
-    if (face == 1u) { return vec2<f32>(p.x + 1.0, p.z + 1.0) * 0.5; }
-    if (face == 2u) { return vec2<f32>(p.x + 1.0, 1.0 - p.z) * 0.5; }
+fn unit_texture(p: vec3<f32>, unit: u32, face: u32, radii: vec2<f32>) -> vec2<f32> {
+    if (face == 1u) { return vec2<f32>(p.x + radii.y, p.z + radii.y) * (0.5 / radii.y); }
+    if (face == 2u) { return vec2<f32>(p.x + radii.x, radii.x - p.z) * (0.5 / radii.x); }
     if (unit == 0u) { return vec2<f32>(around(p), acos(clamp(p.y, -1.0, 1.0)) / 3.141592653589793); }
     return vec2<f32>(around(p), (1.0 - p.y) * 0.5);
 }
@@ -311,14 +312,14 @@ fn solid_fragment(in: Solid) -> Fragment {
     // From the place nearest to the shape's centre, lest small shapes far away drown in rounding.
     let ahead = -dot(eye, d) / dot(d, d);
     let o = eye + d * ahead;
-    let met = meet(o, d, view.ahead.w - ahead, in.which.y);
+    let met = meet(o, d, view.ahead.w - ahead, in.which.y, in.radii);
     if (met.t == NEVER) { discard; }
     let p = o + d * met.t;
-    let n = unit_normal(p, in.which.y, met.face);
+    let n = unit_normal(p, in.which.y, met.face, in.radii);
     let normal = in.x.xyz * n.x + in.y.xyz * n.y + in.z.xyz * n.z;
     let t = met.t + ahead;
     var out: Fragment;
-    let st = unit_texture(p, in.which.y, met.face);
+    let st = unit_texture(p, in.which.y, met.face, in.radii);
     out.color = shade(view.eye.xyz + ray * t, ray, normal, st, in.which.x);
     out.depth = depth_at(ray, t);
     return out;

@@ -1,6 +1,8 @@
 //! The line below: what is shown, by what, and what lies under the pointer.
 
 use crate::state::State;
+use dotray_accel::simd::level;
+use dotray_accel::simd::level_name;
 use eframe::egui;
 use eframe::egui::Ui;
 
@@ -16,7 +18,8 @@ pub fn show(ui: &mut Ui, state: &State) {
         }
         ui.label(format!("{} × {}", state.size[0], state.size[1]));
         ui.separator();
-        ui.label(traced(state));
+        let tracer = format!("Traced by {} threads, {}", rayon::current_num_threads(), level_name(level()));
+        ui.label(traced(state)).on_hover_text(tracer);
         if let Some((seen, document)) = state.hovered.zip(state.document.as_ref()) {
             ui.separator();
             let material = super::rays::material_name(document, seen.material);
@@ -32,7 +35,8 @@ pub fn show(ui: &mut Ui, state: &State) {
 /// How far the traced picture has come.
 fn traced(state: &State) -> String {
     if state.document.is_some() && !state.prepared {
-        return "preparing to trace …".to_owned();
+        let faulty = state.messages.iter().any(|message| message.error);
+        return if faulty { "cannot be traced" } else { "preparing to trace …" }.to_owned();
     }
     match &state.traced {
         Some(traced) if traced.image.is_some() => format!("traced in {:.2} s", traced.seconds),

@@ -3,7 +3,7 @@
 use super::Panels;
 use crate::edit::camera_line;
 use crate::edit::rounded_camera;
-use crate::host;
+use crate::inbox;
 use crate::state::Mode;
 use crate::state::State;
 use eframe::egui;
@@ -41,6 +41,11 @@ impl Theme {
 
 pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
     ui.horizontal_wrapped(|ui| {
+        if inbox::CAN_PICK {
+            let what = "A .ray file with its textures; they stay on this machine";
+            panels.picking |= ui.button("Open …").on_hover_text(what).clicked();
+            ui.separator();
+        }
         let mode = state.mode;
         ui.selectable_value(&mut state.mode, Mode::Preview, "Preview");
         ui.selectable_value(&mut state.mode, Mode::Traced, "Traced").on_hover_text("T");
@@ -73,6 +78,10 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
             panels.theme = theme;
             ui.ctx().set_theme(preference);
         }
+        let mut open = !panels.closed;
+        if ui.toggle_value(&mut open, "Panels").on_hover_text("At the sides (V)").changed() {
+            panels.closed = !open;
+        }
         if ui.button("Keys").on_hover_text("F1").clicked() {
             panels.help = !panels.help;
         }
@@ -97,18 +106,18 @@ pub fn write(state: &mut State, with_camera: bool) {
             return;
         }
     };
-    let Some(document) = &state.document else { return };
+    let (Some(document), Some(source)) = (&state.document, &state.source) else { return };
     let mut names = Vec::new();
     for (file, text) in &texts {
         let path = document.sources.path(*file);
-        if !host::is_as_read(path, document.sources.bytes(*file)) {
+        if !source.files.is_as_read(path, document.sources.bytes(*file)) {
             state.notice = format!(
                 "`{}` is not what is shown: it has changed on the disk, or is compressed; nothing was written",
                 path.display()
             );
             return;
         }
-        if let Err(sentence) = host::store(path, text) {
+        if let Err(sentence) = source.files.store(path, text) {
             state.notice = sentence;
             return;
         }
@@ -118,7 +127,7 @@ pub fn write(state: &mut State, with_camera: bool) {
     state.reload();
 }
 
-const KEYS: [(&str, &str); 17] = [
+const KEYS: [(&str, &str); 19] = [
     ("drag", "orbit"),
     ("right or middle drag, Shift + drag", "pan"),
     ("wheel", "nearer, farther"),
@@ -135,11 +144,15 @@ const KEYS: [(&str, &str); 17] = [
     ("I", "show the selection alone"),
     ("G", "mark the part to trace with the next drag"),
     ("Ctrl + S", "save the traced picture"),
+    ("V", "close and open the panels at the sides"),
     ("Escape", "select nothing"),
+    ("F1", "this list"),
 ];
 
 pub fn help(panels: &mut Panels, ui: &Ui) {
-    egui::Window::new("Keys").open(&mut panels.help).resizable(false).show(ui.ctx(), |ui| {
+    let anchor = egui::Align2::CENTER_CENTER;
+    let window = egui::Window::new("Keys").open(&mut panels.help).resizable(false).anchor(anchor, [0.0, 0.0]);
+    window.show(ui.ctx(), |ui| {
         egui::Grid::new("keys").striped(true).show(ui, |ui| {
             for (key, meaning) in KEYS {
                 ui.strong(key);

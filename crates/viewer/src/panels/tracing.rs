@@ -20,8 +20,7 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
         state.restart();
     }
     if state.accel != accel {
-        state.restart();
-        state.rebuild();
+        state.reload();
     }
     region(panels, ui, state);
     save(panels, ui, state);
@@ -63,10 +62,14 @@ fn choices(ui: &mut Ui, state: &mut State) {
     });
     ui.end_row();
     ui.label("Accelerator").on_hover_text("The picture does not depend on it");
-    egui::ComboBox::from_id_salt("accel").selected_text(state.accel.name()).show_ui(ui, |ui| {
-        for kind in Kind::ALL {
-            ui.selectable_value(&mut state.accel, kind, kind.name());
-        }
+    // For another one the scene is read again, which would drop what was edited here.
+    let edited = state.document.as_ref().is_some_and(crate::document::Document::is_edited);
+    ui.add_enabled_ui(!edited, |ui| {
+        egui::ComboBox::from_id_salt("accel").selected_text(state.accel.name()).show_ui(ui, |ui| {
+            for kind in Kind::ALL {
+                ui.selectable_value(&mut state.accel, kind, kind.name());
+            }
+        });
     });
     ui.end_row();
 }
@@ -82,8 +85,10 @@ fn region(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
 }
 
 fn save(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
-    if panels.picture_name.is_empty() {
-        let path = state.document.as_ref().map(|document| document.path.with_extension("png"));
+    let scene = state.document.as_ref().map(|document| &document.path);
+    if panels.picture_of.as_ref() != scene {
+        panels.picture_of = scene.cloned();
+        let path = scene.map(|path| path.with_extension("png"));
         panels.picture_name = path.map_or_else(String::new, |path| path.display().to_string());
     }
     ui.horizontal(|ui| {
@@ -99,7 +104,7 @@ fn save(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
 /// Stores the traced picture under the name that stands there.
 pub fn save_picture(panels: &Panels, state: &mut State) {
     let path = std::path::Path::new(panels.picture_name.trim());
-    let stored = state.encoded(path).and_then(|bytes| host::store(path, &bytes));
+    let stored = state.encoded(path).and_then(|bytes| host::save(path, &bytes));
     state.notice = match stored {
         Ok(()) => format!("saved: {}", path.display()),
         Err(sentence) => sentence,

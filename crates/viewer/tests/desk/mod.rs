@@ -62,9 +62,21 @@ impl Desk {
 
     /// Opens a scene and waits until the window is there and has the keyboard.
     pub fn open(&self, scene: &Path, arguments: &[&str], scale: &str) -> Window<'_> {
+        self.open_by(&[], scene, arguments, scale)
+    }
+
+    /// The same with environment variables of its own.
+    pub fn open_by(
+        &self,
+        variables: &[(&str, &str)],
+        scene: &Path,
+        arguments: &[&str],
+        scale: &str,
+    ) -> Window<'_> {
         let program = Command::new(env!("CARGO_BIN_EXE_rayview"))
             .arg(scene)
             .args(arguments)
+            .envs(variables.iter().copied())
             .env("DISPLAY", &self.display)
             .env("LIBGL_ALWAYS_SOFTWARE", "1")
             .env("WINIT_X11_SCALE_FACTOR", scale)
@@ -84,6 +96,13 @@ impl Desk {
     fn tool(&self, arguments: &[&str]) -> bool {
         let run = Command::new("xdotool").args(arguments).env("DISPLAY", &self.display).output();
         run.is_ok_and(|output| output.status.success())
+    }
+
+    /// What is on the clipboard; `None` where the program that tells is missing.
+    pub fn clipboard(&self) -> Option<String> {
+        let arguments = ["-selection", "clipboard", "-o"];
+        let run = Command::new("xclip").args(arguments).env("DISPLAY", &self.display).output().ok()?;
+        Some(String::from_utf8_lossy(&run.stdout).into_owned())
     }
 
     /// Waits for something.
@@ -163,6 +182,20 @@ impl Window<'_> {
     /// Presses a key.
     pub fn key(&self, key: &str) {
         assert!(self.desk.tool(&["key", key]));
+        sleep(Duration::from_millis(300));
+    }
+
+    /// Holds a key for a while.
+    pub fn hold(&self, key: &str, time: Duration) {
+        assert!(self.desk.tool(&["keydown", key]));
+        sleep(time);
+        assert!(self.desk.tool(&["keyup", key]));
+        sleep(Duration::from_millis(300));
+    }
+
+    /// Types a text.
+    pub fn write(&self, text: &str) {
+        assert!(self.desk.tool(&["type", "--delay", "60", text]));
         sleep(Duration::from_millis(300));
     }
 

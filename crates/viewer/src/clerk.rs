@@ -1,0 +1,165 @@
+//! The tracer's side of a wire: prepares scenes, has pictures traced and sends no more of them than the screen shows.
+
+use crate::bundle::Bundle;
+use crate::document::Message;
+use crate::document::messages;
+use crate::engine::Command;
+use crate::engine::Engine;
+use crate::engine::Reply;
+use crate::wire::Ask;
+use crate::wire::Sent;
+use crate::wire::Tell;
+use dotray_accel::Kind;
+use dotray_render::PrepareOptions;
+use dotray_render::Textures;
+use dotray_render::World;
+use dotray_scene::Files;
+use dotray_scene::Resolved;
+use dotray_scene::Sources;
+use dotray_scene::load::LoadOptions;
+use dotray_scene::load::load;
+use dotray_scene::resolve::resolve;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use web_time::Instant;
+
+/// See the module.
+#[derive(Debug, Default)]
+pub struct Clerk {
+    engine: Engine,
+    /// Lights, materials and colours of the scene as they were read.
+    style: Option<Box<Resolved>>,
+    /// Whether a picture was sent that the screen has not shown yet.
+    awaited: bool,
+    /// The newest picture that could not be sent.
+    held: Option<Tell>,
+}
+
+impl Clerk {
+    /// Whether there is more to trace.
+    pub fn is_busy(&self) -> bool {
+        self.engine.is_busy()
+    }
+
+    /// Ends the portion under way.
+    pub fn interrupt(&self) -> Arc<AtomicBool> {
+        self.engine.interrupt()
+    }
+
+    /// Does what was asked for. `kept` is where a scene is read that comes without its files.
+    pub fn handle(&mut self, ask: Ask, kept: &dyn Files) -> Vec<Tell> {
+        let command = match ask {
+            Ask::Open { number, path, accel, files } => {
+                let bundle = Bundle::new(files);
+                let files: &dyn Files = if bundle.is_empty() { kept } else { &bundle };
+                return vec![self.open(number, Path::new(&path), &accel, files)];
+            }
+            Ask::Style(style) => match self.style.as_ref().and_then(|old| style.put_on(old)) {
+                Some(resolved) => Command::Style(Box::new(resolved)),
+                None => return Vec::new(),
+            },
+            Ask::Draw(request) => {
+                self.held = None;
+                Command::Draw(request)
+            }
+            Ask::Stop => {
+                self.held = None;
+                Command::Stop
+            }
+            Ask::Look(request, x, y) => Command::Look(request, x, y),
+            Ask::Inspect(request, x, y) => Command::Inspect(request, x, y),
+            Ask::Shown => {
+                let held = self.held.take();
+                self.awaited = held.is_some();
+                return held.into_iter().collect();
+            }
+            // Whoever can store files has done so.
+            Ask::Store(..) => return Vec::new(),
+        };
+        let replies = self.engine.handle(command);
+        replies.into_iter().filter_map(|reply| self.tell(reply)).collect()
+    }
+
+    /// Traces a portion.
+    pub fn advance(&mut self) -> Option<Tell> {
+        let reply = self.engine.advance()?;
+        self.tell(reply)
+    }
+
+    fn open(&mut self, number: u64, path: &Path, accel: &str, files: &dyn Files) -> Tell {
+        let accel = Kind::ALL.into_iter().find(|kind| kind.name() == accel).unwrap_or_default();
+        let start = Instant::now();
+        match prepared(path, files, &PrepareOptions { accel, ..PrepareOptions::default() }) {
+            Ok((world, style)) => {
+                self.style = Some(Box::new(style));
+                self.held = None;
+                self.engine.handle(Command::World(Some(Box::new(world))));
+                Tell::Prepared(number, start.elapsed().as_secs_f64())
+            }
+            Err(messages) => Tell::Failed(number, messages.into_iter().map(|message| message.text).collect()),
+        }
+    }
+
+    fn tell(&mut self, reply: Reply) -> Option<Tell> {
+        let tell = match reply {
+            Reply::Picture { serial, size, pixels, done, seconds, image } => Tell::Picture(Box::new(Sent {
+                serial,
+                size: size.map(|edge| u32::try_from(edge).unwrap_or(u32::MAX)),
+                pixels: Arc::unwrap_or_clone(pixels),
+                differs: false,
+                done,
+                seconds,
+                film: image.map(|image| bytemuck::cast_slice(image.samples()).to_vec()),
+            })),
+            Reply::Seen(seen) => return Some(Tell::Seen(seen)),
+            Reply::Rays(rows) => return Some(Tell::Rays(Arc::unwrap_or_clone(rows))),
+            Reply::Refused(sentence) => return Some(Tell::Refused(sentence)),
+        };
+        if std::mem::replace(&mut self.awaited, true) {
+            self.held = Some(tell);
+            return None;
+        }
+        Some(tell)
+    }
+}
+
+/// The scene for the tracer, and what can be edited of it.
+fn prepared(
+    path: &Path,
+    files: &dyn Files,
+    options: &PrepareOptions,
+) -> Result<(World, Resolved), Vec<Message>> {
+    let loaded = load(path, files, &LoadOptions::default());
+    let (mut diagnostics, sources) = (loaded.diagnostics, loaded.sources);
+    let resolved = loaded.scene.map(resolve).and_then(|outcome| {
+        diagnostics.extend(outcome.diagnostics);
+        outcome.resolved
+    });
+    let Some(resolved) = resolved else { return Err(messages(&diagnostics, &sources)) };
+    let style = without_shapes(&resolved);
+    let textures = Textures::load(&resolved, files, options).map_err(|faults| messages(&faults, &sources))?;
+    drop(sources);
+    let world = World::build(resolved, textures, options);
+    // What is said of a whole scene has no place.
+    let world = world.map_err(|faults| messages(&faults, &Sources::default()))?;
+    Ok((world, style))
+}
+
+fn without_shapes(resolved: &Resolved) -> Resolved {
+    Resolved {
+        camera: resolved.camera,
+        background: resolved.background,
+        secondary_background: resolved.secondary_background,
+        ambient: resolved.ambient,
+        lights: resolved.lights.clone(),
+        tints: resolved.tints.clone(),
+        materials: resolved.materials.clone(),
+        textures: resolved.textures.clone(),
+        frames: Vec::new(),
+        runs: Vec::new(),
+        tree: Vec::new(),
+        shape_count: 0,
+        files: Vec::new(),
+    }
+}

@@ -1,0 +1,173 @@
+//! A tracer elsewhere: an object of the page's JavaScript with `postMessage` and `onmessage`, as workers have them.
+//! Messages are bytes; one that is `null` says that nobody is there any more.
+
+use super::Asked;
+use super::News;
+use super::Teller;
+use crate::bundle::Recorder;
+use crate::document::Message;
+use crate::engine::Command;
+use crate::engine::Reply;
+use crate::host::Page;
+use crate::host::Served;
+use crate::link::Source;
+use crate::memory::MOST;
+use crate::wire::Ask;
+use crate::wire::Style;
+use crate::wire::Tell;
+use crate::wire::bytes;
+use crate::wire::message;
+use crate::wire::packed;
+use crate::wire::unpacked;
+use dotray_image::Channels;
+use dotray_image::Image;
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::Ordering;
+use wasm_bindgen::JsCast;
+use wasm_bindgen::JsValue;
+use wasm_bindgen::closure::Closure;
+
+/// Messages as they came.
+type Arrived = Rc<RefCell<VecDeque<Option<Vec<u8>>>>>;
+
+/// See the module.
+pub struct Port {
+    object: JsValue,
+    post: js_sys::Function,
+    /// Whether large messages are packed, for a wire.
+    packing: bool,
+    arrived: Arrived,
+    /// What the scene's files are to be stored as.
+    outgoing: Arc<Mutex<Vec<Ask>>>,
+    /// The pixels that were shown last.
+    before: Vec<u8>,
+    _listener: Closure<dyn FnMut(JsValue)>,
+}
+
+fn get(object: &JsValue, name: &str) -> Option<JsValue> {
+    js_sys::Reflect::get(object, &name.into()).ok().filter(|value| !value.is_undefined() && !value.is_null())
+}
+
+impl Port {
+    /// The page's tracer, where it has one.
+    pub fn open(page: &Page, teller: &Teller) -> Option<Self> {
+        let object = get(&page.given, "tracer")?;
+        let packing = get(&page.given, "packing").is_some_and(|packing| packing.is_truthy());
+        let post = get(&object, "postMessage")?.dyn_into().ok()?;
+        let arrived = Arrived::default();
+        let (queue, wake) = (arrived.clone(), teller.wake.clone());
+        let listener = Closure::new(move |event: JsValue| {
+            let data = get(&event, "data");
+            queue.borrow_mut().push_back(data.map(|data| js_sys::Uint8Array::new(&data).to_vec()));
+            wake();
+        });
+        let taken = js_sys::Reflect::set(&object, &"onmessage".into(), listener.as_ref());
+        taken.ok()?;
+        Some(Self {
+            object,
+            post,
+            packing,
+            arrived,
+            outgoing: Arc::default(),
+            before: Vec::new(),
+            _listener: listener,
+        })
+    }
+
+    fn ask(&self, ask: &Ask) {
+        let bytes = bytes(ask);
+        let bytes = if self.packing { packed(&bytes) } else { bytes };
+        // A tracer that is gone has said so.
+        let _ = self.post.call1(&self.object, &js_sys::Uint8Array::from(bytes.as_slice()));
+    }
+
+    pub fn send(&self, command: Command) {
+        self.ask(&match command {
+            // Worlds are built where they are traced.
+            Command::World(_) => return,
+            Command::Style(style) => Ask::Style(Box::new(Style::of(&style))),
+            Command::Draw(request) => Ask::Draw(request),
+            Command::Stop => Ask::Stop,
+            Command::Look(request, x, y) => Ask::Look(request, x, y),
+            Command::Inspect(request, x, y) => Ask::Inspect(request, x, y),
+        });
+    }
+
+    /// Reads a scene for the screen, and has the tracer read it, too.
+    pub fn read(&mut self, asked: Asked, teller: &Teller) {
+        let recorder = Recorder::new(&*asked.source.files, MOST);
+        if teller.read(&asked, &recorder).is_none() {
+            return;
+        }
+        let files =
+            if asked.source.files.is_known_elsewhere() { Vec::new() } else { recorder.kept().files() };
+        let (path, accel) = (asked.source.path.to_string_lossy().into_owned(), asked.prepare.accel.name());
+        self.ask(&Ask::Open { number: asked.number, path, accel: accel.to_owned(), files });
+    }
+
+    /// Takes what has come.
+    pub fn work(&mut self, teller: &Teller) {
+        let outgoing = std::mem::take(&mut *self.outgoing.lock().unwrap_or_else(PoisonError::into_inner));
+        outgoing.iter().for_each(|ask| self.ask(ask));
+        let arrived = std::mem::take(&mut *self.arrived.borrow_mut());
+        for bytes in arrived {
+            let Some(bytes) = bytes else {
+                teller.tell(News::Notice("the tracer is gone: load the page again".to_owned()));
+                continue;
+            };
+            let whole = if self.packing { unpacked(&bytes) } else { Ok(bytes) };
+            match whole.and_then(|bytes| message(&bytes)) {
+                Ok(tell) => self.take(tell, teller),
+                Err(fault) => teller.tell(News::Notice(fault)),
+            }
+        }
+    }
+
+    fn take(&mut self, tell: Tell, teller: &Teller) {
+        let current = |number: u64| teller.last_asked.load(Ordering::Relaxed) == number;
+        match tell {
+            Tell::Scene { path, files } => {
+                let files = Arc::new(Served::new(files, self.outgoing.clone()));
+                teller.tell(News::Sent(Source { path: PathBuf::from(path), files }));
+            }
+            Tell::Prepared(number, seconds) if current(number) => teller.tell(News::Prepared(seconds)),
+            Tell::Failed(number, texts) if current(number) => {
+                let messages = texts.into_iter().map(|text| Message { error: true, text }).collect();
+                teller.tell(News::Failed(messages));
+            }
+            Tell::Prepared(..) | Tell::Failed(..) => {}
+            Tell::Picture(sent) => {
+                self.ask(&Ask::Shown);
+                let sent = sent.whole(&self.before);
+                self.before.clone_from(&sent.pixels);
+                let size = sent.size.map(|edge| edge as usize);
+                let image = sent.film.and_then(|film| image(size, &film));
+                teller.tell(News::Reply(Reply::Picture {
+                    serial: sent.serial,
+                    size,
+                    pixels: Arc::new(sent.pixels),
+                    done: sent.done,
+                    seconds: sent.seconds,
+                    image: image.map(Arc::new),
+                }));
+            }
+            Tell::Seen(seen) => teller.tell(News::Reply(Reply::Seen(seen))),
+            Tell::Rays(rows) => teller.tell(News::Reply(Reply::Rays(Arc::new(rows)))),
+            Tell::Refused(sentence) => teller.tell(News::Reply(Reply::Refused(sentence))),
+            Tell::Notice(sentence) => teller.tell(News::Notice(sentence)),
+        }
+    }
+}
+
+/// The finished picture of its samples' bytes.
+fn image([width, height]: [usize; 2], film: &[u8]) -> Option<Image> {
+    let samples: Vec<f32> = bytemuck::pod_collect_to_vec(film);
+    let channels = if samples.len() == width * height * 4 { Channels::Rgba } else { Channels::Rgb };
+    Image::from_samples(width, height, channels, samples).ok()
+}

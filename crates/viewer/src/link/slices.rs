@@ -1,0 +1,52 @@
+//! Tracing on the page's one thread.
+
+use super::Asked;
+use super::News;
+use super::Teller;
+use crate::engine::Command;
+use crate::engine::Engine;
+use dotray_render::Textures;
+use dotray_scene::Resolved;
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use web_time::Instant;
+
+/// See the module.
+#[derive(Default)]
+pub struct Slices {
+    engine: Engine,
+    commands: RefCell<VecDeque<Command>>,
+    /// A scene that was read and has to be built, after it was drawn.
+    unbuilt: Option<Box<(Asked, Resolved, Textures)>>,
+}
+
+impl Slices {
+    pub fn send(&self, command: Command) {
+        self.commands.borrow_mut().push_back(command);
+    }
+
+    pub fn read(&mut self, asked: Asked, teller: &Teller) {
+        let read = teller.read(&asked, &*asked.source.files);
+        self.unbuilt = read.map(|(resolved, textures)| Box::new((asked, resolved, textures)));
+    }
+
+    /// All commands and one portion of tracing.
+    pub fn work(&mut self, teller: &Teller) {
+        if let Some(parts) = self.unbuilt.take() {
+            let (asked, resolved, textures) = *parts;
+            let start = Instant::now();
+            if let Some(world) = teller.build(&asked, resolved, textures) {
+                self.send(Command::World(Some(world)));
+                teller.tell(News::Prepared(start.elapsed().as_secs_f64()));
+            }
+        }
+        let commands = std::mem::take(&mut *self.commands.borrow_mut());
+        for command in commands {
+            self.engine.handle(command).into_iter().for_each(|reply| teller.tell(News::Reply(reply)));
+        }
+        if self.engine.is_busy() {
+            self.engine.advance().into_iter().for_each(|reply| teller.tell(News::Reply(reply)));
+            (teller.wake)();
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! One page and its tracer: a socket, and a thread that traces.
+
+use crate::bundle::Bundle;
+use crate::bundle::Recorder;
+use crate::clerk::Clerk;
+use crate::host::Home;
+use crate::link::Wake;
+use crate::memory;
+use crate::watch::Watch;
+use crate::wire;
+use crate::wire::Ask;
+use crate::wire::Sent;
+use crate::wire::Tell;
+use dotray_render::PrepareOptions;
+use dotray_render::Textures;
+use dotray_scene::files::Disk;
+use dotray_scene::load::LoadOptions;
+use dotray_scene::load::load;
+use dotray_scene::resolve::resolve;
+use std::io::ErrorKind;
+use std::net::TcpStream;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc;
+use std::time::Duration;
+use tungstenite::Message;
+use tungstenite::WebSocket;
+use tungstenite::protocol::Role;
+use tungstenite::protocol::WebSocketConfig;
+
+/// For how long the page is listened to before the tracer is.
+const TURN: Duration = Duration::from_millis(4);
+
+/// Bytes that a message of the page may have: a scene's file that is written back is the largest.
+const MOST_ASKED: usize = 256 << 20;
+
+/// The scene as the page has it: what the tracer reads, too.
+type Current = Arc<Mutex<Arc<Bundle>>>;
+
+fn current(bundle: &Current) -> Arc<Bundle> {
+    bundle.lock().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+struct Session<'a> {
+    socket: WebSocket<TcpStream>,
+    scene: &'a Path,
+    bundle: Current,
+    watch: Option<Watch>,
+    /// The picture that was sent last.
+    before: Sent,
+}
+
+/// Serves a page until it goes.
+pub fn run(stream: TcpStream, scene: &Path) {
+    if stream.set_read_timeout(Some(TURN)).is_err() || stream.set_nodelay(true).is_err() {
+        return;
+    }
+    let config =
+        WebSocketConfig::default().max_message_size(Some(MOST_ASKED)).max_frame_size(Some(MOST_ASKED));
+    let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
+    let bundle = Current::default();
+    let mut session = Session { socket, scene, bundle: bundle.clone(), watch: None, before: Sent::default() };
+    let (asks, asked) = mpsc::channel();
+    let (teller, tells) = mpsc::channel();
+    let clerk = Clerk::default();
+    let interrupt = clerk.interrupt();
+    let tracer = std::thread::spawn(move || trace(clerk, &asked, &teller, &bundle));
+    // Whoever does not listen any more has gone.
+    let _ = session.send_scene();
+    while let Some(ask) = session.turn(&tells) {
+        let Some(ask) = ask else { continue };
+        let at_once = !matches!(ask, Ask::Look(..) | Ask::Shown);
+        if asks.send(ask).is_err() {
+            break;
+        }
+        if at_once {
+            interrupt.store(true, Ordering::Relaxed);
+        }
+    }
+    drop(asks);
+    interrupt.store(true, Ordering::Relaxed);
+    // What the tracer has to say of its end it has said on the error stream.
+    let _ = tracer.join();
+}
+
+impl Session<'_> {
+    /// Listens for a moment, then sends what the tracer has; what the page asks of the tracer comes back, and `None`
+    /// where the page is gone.
+    fn turn(&mut self, tells: &mpsc::Receiver<Tell>) -> Option<Option<Ask>> {
+        let ask = match self.socket.read() {
+            Ok(Message::Binary(bytes)) => {
+                // Whoever sends anything else is no page of ours.
+                let ask = wire::unpacked(&bytes).and_then(|bytes| wire::message(&bytes)).ok()?;
+                self.take(ask)?
+            }
+            Ok(Message::Close(_) | Message::Text(_)) => return None,
+            Ok(Message::Ping(_) | Message::Pong(_) | Message::Frame(_)) => None,
+            Err(tungstenite::Error::Io(fault))
+                if matches!(fault.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) =>
+            {
+                None
+            }
+            Err(_) => return None,
+        };
+        for tell in tells.try_iter().collect::<Vec<_>>() {
+            self.send(tell)?;
+        }
+        if matches!(self.watch.as_mut().map(Watch::changed), Some(Ok(true))) {
+            self.send_scene()?;
+        }
+        Some(ask)
+    }
+
+    /// Does what is done here; the rest is for the tracer.
+    fn take(&mut self, ask: Ask) -> Option<Option<Ask>> {
+        match ask {
+            Ask::Store(path, bytes) => {
+                let sentence = match self.store(Path::new(&path), &bytes) {
+                    Ok(()) => format!("written: {path}"),
+                    Err(sentence) => sentence,
+                };
+                self.send(Tell::Notice(sentence))?;
+                Some(None)
+            }
+            // The tracer has the files from here, never from the page.
+            Ask::Open { number, accel, .. } => {
+                let path = self.scene.to_string_lossy().into_owned();
+                Some(Some(Ask::Open { number, path, accel, files: Vec::new() }))
+            }
+            Ask::Style(_) | Ask::Draw(_) | Ask::Stop | Ask::Look(..) | Ask::Inspect(..) | Ask::Shown => {
+                Some(Some(ask))
+            }
+        }
+    }
+
+    /// Stores a file that belongs to the scene and is what the page was sent; no other.
+    fn store(&self, path: &Path, bytes: &[u8]) -> Result<(), String> {
+        use dotray_scene::Files;
+        let bundle = current(&self.bundle);
+        let Ok(sent) = bundle.read(path) else {
+            return Err(format!("`{}` is no file of the scene: nothing was written", path.display()));
+        };
+        if !Disk.is_as_read(path, &sent) {
+            return Err(format!("`{}` has changed on the disk: nothing was written", path.display()));
+        }
+        Disk.store(path, bytes)?;
+        bundle.add(path, bytes.to_vec());
+        Ok(())
+    }
+
+    /// Sends the scene, unless the page has it as it is.
+    fn send_scene(&mut self) -> Option<()> {
+        let bundle = Arc::new(read(self.scene));
+        let wake: Wake = Arc::new(|| {});
+        let paths = bundle.paths();
+        let paths = paths.iter().map(|path| path.as_path()).chain([self.scene]);
+        self.watch = Watch::new(paths, wake);
+        let files = bundle.files();
+        if files == current(&self.bundle).files() {
+            return Some(());
+        }
+        *self.bundle.lock().unwrap_or_else(PoisonError::into_inner) = bundle;
+        let path = self.scene.to_string_lossy().into_owned();
+        self.send(Tell::Scene { path, files })
+    }
+
+    fn send(&mut self, tell: Tell) -> Option<()> {
+        let tell = match tell {
+            Tell::Picture(sent) => {
+                let before = std::mem::replace(&mut self.before, Sent { film: None, ..(*sent).clone() });
+                Tell::Picture(Box::new(sent.against(&before)))
+            }
+            Tell::Scene { .. }
+            | Tell::Prepared(..)
+            | Tell::Failed(..)
+            | Tell::Seen(_)
+            | Tell::Rays(_)
+            | Tell::Refused(_)
+            | Tell::Notice(_) => tell,
+        };
+        let packed = wire::packed(&wire::bytes(&tell));
+        self.socket.send(Message::binary(packed)).ok()
+    }
+}
+
+/// All that the scene is made of, as far as it can be read.
+fn read(scene: &Path) -> Bundle {
+    let recorder = Recorder::new(&Disk, memory::MOST);
+    let loaded = load(scene, &recorder, &LoadOptions::default());
+    if let Some(resolved) = loaded.scene.and_then(|scene| resolve(scene).resolved) {
+        // What is wrong with textures is told where they are shown.
+        let _ = Textures::load(&resolved, &recorder, &PrepareOptions::default());
+    }
+    recorder.kept()
+}
+
+/// The tracer's thread: what is asked comes before work.
+fn trace(mut clerk: Clerk, asked: &mpsc::Receiver<Ask>, tells: &mpsc::Sender<Tell>, bundle: &Current) {
+    let interrupt = clerk.interrupt();
+    loop {
+        interrupt.store(false, Ordering::Relaxed);
+        let ask = if clerk.is_busy() {
+            match asked.try_recv() {
+                Ok(ask) => Some(ask),
+                Err(mpsc::TryRecvError::Empty) => None,
+                Err(mpsc::TryRecvError::Disconnected) => return,
+            }
+        } else {
+            match asked.recv() {
+                Ok(ask) => Some(ask),
+                Err(mpsc::RecvError) => return,
+            }
+        };
+        let told = match ask {
+            Some(ask) => clerk.handle(ask, &*current(bundle)),
+            None => clerk.advance().into_iter().collect(),
+        };
+        for tell in told {
+            if tells.send(tell).is_err() {
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,192 @@
+"""What the tests of the page share: a browser, the page's files on a server of their own, and a hand that knows the page.
+
+The environment names the programs: CHROMIUM, DOTRAY and RAYVIEW; `run.sh` sets them.
+"""
+
+import functools
+import http.server
+import io
+import os
+import pathlib
+import subprocess
+import threading
+import time
+
+import numpy
+import PIL.Image
+import pytest
+from playwright.sync_api import sync_playwright
+
+ROOT = pathlib.Path(__file__).parents[4]
+DIST = ROOT / "crates/viewer/web/dist"
+
+SCENE = """// a scene of a few shapes
+#camera 0 1.2 7  0 -.12 -1  0 1 0  .38
+#background .2 .3 .5
+#ambient .5 .5 .5
+#light_point .6 .6 .5  2 6 4  1 0 .01
+#light_dir .3 .3 .3  -1 -1 -1
+#texture_num 1
+#texture cells.png
+#material_num 2
+#material .3 .3 .3  .7 .7 .7  .3 .3 .3  0 0 0  .2 0 1  0 !textured!
+#material .2 .1 .1  .8 .3 .2  .6 .6 .6  0 0 0  .5 0 1  -1 !mirror!
+#shape_box 0  0 -.3 0  6 .4 5
+#shape_sphere 1  -1.2 .9 0  1
+#shape_cylinder 0  1.3 .6 .3  .6 1.4
+"""
+
+
+def cells():
+    """A texture."""
+    rows = [[(230, 200, 60), (60, 100, 200), (200, 80, 80)][(x + y) % 3] for y in range(8) for x in range(8)]
+    image = PIL.Image.new("RGB", (8, 8))
+    image.putdata(rows)
+    out = io.BytesIO()
+    image.save(out, "PNG")
+    return out.getvalue()
+
+
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
+@pytest.fixture(scope="session")
+def site():
+    """The page's files, as any server for files has them."""
+    handler = functools.partial(Quiet, directory=DIST)
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}/"
+    server.shutdown()
+
+
+@pytest.fixture(scope="session")
+def browser():
+    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+    flags += ["--force-color-profile=srgb", "--disable-dev-shm-usage"]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=os.environ["CHROMIUM"], args=flags, chromium_sandbox=False
+        )
+        yield browser
+        browser.close()
+
+
+def rendered(folder, name, size, *more):
+    """What `dotray render` makes of a scene: the bytes of its file."""
+    out = folder / f"rendered-{size[0]}x{size[1]}.png"
+    command = [os.environ["DOTRAY"], "render", folder / name, out, *map(str, size), *more]
+    subprocess.run(command, check=True, capture_output=True)
+    return out.read_bytes()
+
+
+def pixels(png):
+    return numpy.asarray(PIL.Image.open(io.BytesIO(png)).convert("RGB"))
+
+
+class Viewer:
+    """A page with the viewer on it, and a hand."""
+
+    def __init__(self, browser, address, scale=1, size=(1100, 640), prepare=lambda page: None):
+        viewport = {"width": size[0], "height": size[1]}
+        self.context = browser.new_context(viewport=viewport, device_scale_factor=scale, color_scheme="dark")
+        self.scale = scale
+        self.page = self.context.new_page()
+        self.requests, self.faults = [], []
+        self.page.on("request", lambda request: self.requests.append((request.method, request.url)))
+        self.page.on("pageerror", lambda fault: self.faults.append(str(fault)))
+        prepare(self.page)
+        self.page.goto(address)
+        self.wait("data-view", bool)
+
+    def get(self, name):
+        return self.page.locator("canvas").get_attribute(name) or ""
+
+    def wait(self, name, wanted, seconds=60):
+        """Waits until an attribute of the canvas is so."""
+        until = time.monotonic() + seconds
+        while True:
+            value = self.get(name)
+            if wanted(value) if callable(wanted) else value == wanted:
+                return value
+            if time.monotonic() > until:
+                said = self.page.locator("#message").inner_text()
+                pytest.fail(f"{name} is {value!r} after {seconds} s; {said!r} {self.get('aria-label')!r} {self.faults}")
+            time.sleep(0.05)
+
+    def drop(self, files):
+        """Drops files on the page, as a hand does."""
+        files = [{"name": name, "bytes": list(content)} for name, content in files.items()]
+        transfer = self.page.evaluate_handle(
+            """(files) => {
+                const transfer = new DataTransfer();
+                for (const file of files) transfer.items.add(new File([new Uint8Array(file.bytes)], file.name));
+                return transfer;
+            }""",
+            files,
+        )
+        self.page.dispatch_event("canvas", "dragover", {"dataTransfer": transfer})
+        self.page.dispatch_event("canvas", "drop", {"dataTransfer": transfer})
+
+    def view(self):
+        """The view's place in points, and its size in pixels."""
+        x, y, width, height = self.wait("data-view", bool).split()
+        return float(x), float(y), int(width), int(height)
+
+    def at(self, across, down):
+        """A place in points of a part of the view."""
+        x, y, width, height = self.view()
+        return x + width / self.scale * across, y + height / self.scale * down
+
+    def shot(self):
+        """The view's pixels; the pointer is put where it shows nothing."""
+        self.page.mouse.move(5, self.page.viewport_size["height"] - 5)
+        time.sleep(0.5)
+        x, y, width, height = self.view()
+        clip = {"x": x, "y": y, "width": width / self.scale, "height": height / self.scale}
+        return pixels(self.page.screenshot(clip=clip, scale="device"))
+
+    def drag(self, start, end):
+        self.page.mouse.move(*start)
+        self.page.mouse.down()
+        for step in range(1, 6):
+            self.page.mouse.move(*[a + (b - a) * step / 5 for a, b in zip(start, end)])
+            time.sleep(0.1)
+        self.page.mouse.up()
+
+    def click(self, x, y):
+        # A press and its release in one frame of the screen would be no click.
+        self.page.mouse.move(x, y)
+        time.sleep(0.3)
+        self.page.mouse.down()
+        time.sleep(0.2)
+        self.page.mouse.up()
+
+    def trace(self):
+        """Switches to the traced picture and waits for its end."""
+        self.wait("data-prepared", "true")
+        if self.get("data-mode") != "traced":
+            self.page.keyboard.press("t")
+        self.wait("data-traced", "true", seconds=120)
+        return self.shot()
+
+    def close(self):
+        self.context.close()
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """A folder with the scene and its texture."""
+    (tmp_path / "shapes.ray").write_text(SCENE)
+    (tmp_path / "cells.png").write_bytes(cells())
+    return tmp_path
+
+
+@pytest.fixture
+def viewer(browser, site):
+    viewer = Viewer(browser, site)
+    yield viewer
+    viewer.close()
+    assert not viewer.faults

@@ -1,0 +1,214 @@
+//! The preview against the renderer's picture without shadows and further rays, without a window, with whatever driver
+//! there is (a software one in CI). Without any it says so and passes, unless `RAYVIEW_SCREEN=required`.
+
+mod offscreen;
+
+use dotray_image::EncodeOptions;
+use dotray_image::Format;
+use dotray_image::Image;
+use dotray_image::encode;
+use dotray_render::Options;
+use dotray_render::PrepareOptions;
+use dotray_render::Shadows;
+use dotray_render::Silent;
+use dotray_render::World;
+use dotray_scene::files::Disk;
+use rayview::document::Opened;
+use rayview::document::open;
+use rayview::gpu::Raster;
+use rayview::hidden::Hidden;
+use std::path::Path;
+
+const WIDTH: u32 = 480;
+const HEIGHT: u32 = 320;
+
+fn raster() -> Option<Raster> {
+    let device = offscreen::device();
+    if device.is_none() {
+        let required = std::env::var("RAYVIEW_SCREEN").is_ok_and(|value| value == "required");
+        assert!(!required, "no driver draws here");
+        println!("skipped, no driver");
+    }
+    device.map(|device| Raster::new(&device))
+}
+
+fn opened(path: &Path) -> Opened {
+    open(path, &Disk).unwrap_or_else(|messages| panic!("{}: {messages:?}", path.display()))
+}
+
+fn load(raster: &mut Raster, opened: &Opened) {
+    let document = &opened.document;
+    raster.load(&document.packed, document.draft.as_ref(), &document.pictures, &document.style);
+}
+
+/// What the rasteriser draws, red, green and blue.
+fn drawn(raster: &mut Raster, opened: &Opened) -> Vec<u8> {
+    raster.draw(&opened.document.camera, [WIDTH, HEIGHT], false).expect("a picture");
+    while raster.is_unfinished() {
+        raster.go_on();
+    }
+    let ([width, height], pixels) = raster.pixels().expect("pixels");
+    assert_eq!((width, height), (WIDTH, HEIGHT));
+    pixels.chunks_exact(4).flat_map(|pixel| pixel.iter().take(3).copied()).collect()
+}
+
+fn rendered(opened: Opened) -> Vec<u8> {
+    let world = World::prepare(opened.resolved, &Disk, &PrepareOptions::default()).expect("a world");
+    let options =
+        Options { width: WIDTH, height: HEIGHT, recursion: 0, shadows: Shadows::Off, ..Options::default() };
+    dotray_render::render(&world, &options, &Silent).expect("a picture").image.to_rgb8(false)
+}
+
+/// The share of the pixels that differ by more than 6 of 255 in a channel; both pictures are kept where
+/// `RAYVIEW_SHOTS` says.
+fn unlike(name: &str, a: &[u8], b: &[u8]) -> f64 {
+    if let Some(folder) = std::env::var_os("RAYVIEW_SHOTS") {
+        let both = a.chunks_exact(3 * WIDTH as usize).zip(b.chunks_exact(3 * WIDTH as usize));
+        let samples =
+            both.flat_map(|(a, b)| a.iter().chain(b)).map(|byte| f32::from(*byte) / 255.0).collect();
+        let channels = dotray_image::Channels::Rgb;
+        let image =
+            Image::from_samples(2 * WIDTH as usize, HEIGHT as usize, channels, samples).expect("an image");
+        let file = encode(&image, Format::Png, &EncodeOptions::default()).expect("a file");
+        std::fs::write(Path::new(&folder).join(format!("raster-{name}.png")), file).expect("written");
+    }
+    let pixels = a.chunks_exact(3).zip(b.chunks_exact(3));
+    let off = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 6)).count();
+    off as f64 / (a.len() / 3) as f64
+}
+
+const HEAD: &str = "#camera 0 3 11  0 -.22 -1  0 1 0  .36
+#background .2 .3 .5
+#ambient .6 .6 .6
+#light_point .4 .4 .3  2 6 4  1 0 .01
+#light_spot .6 .2 .2  -3 5 3  .5 -1 -.5  1 0 0  .6 .05
+#light_dir .3 .3 .2  -1 -1 -1
+#light_area .3 .3 .5  4 3 3  -1 -.6 -.8  .1  1 .05 0
+#texture_num 1
+#texture cells.png
+#material_num 4
+#material .2 .2 .2  .7 .7 .7  .3 .3 .3  0 0 0  .2 0 1  0 !textured!
+#material .2 .1 .1  .8 .3 .2  .6 .6 .6  .05 0 0  .3 0 1  -1 !plain!
+#material .1 .2 .1  .3 .7 .4  .4 .4 .4  .1 .1 0  .1 0 1  -1 !green!
+#material .2 .2 .2  .8 .8 .8  .4 .4 .4  0 0 0  0 0 1  0 !*shiny 90!
+";
+
+/// One of each shape, with the material of a number, side by side.
+fn each(material: u32) -> String {
+    let m = material;
+    format!(
+        "#shape_sphere {m} -4 0 0 .5\n#shape_box {m} -2.7 0 0 .9 .8 .7\n#shape_cylinder {m} -1.4 0 0 .45 1
+         #shape_cone {m} -.1 0 0 .5 1.1\n#shape_cone {m} 1.2 0 0 .5 1 .25\n#shape_cone {m} 2.5 0 0 .2 .9 .5
+         #shape_box {m} 3.6 .1 0 .8 .8 0
+         #shape_triangle {m} 4.2 -.4 0 5.2 -.4 0 4.7 .6 0  0 0 1 0 0 1 .3 .3 1  0 1 1 1 .5 0\n"
+    )
+}
+
+/// Every shape as it is, squeezed and sheared in a group, and mirrored, turned over and enlarged in two.
+fn every_shape() -> String {
+    let mut text = HEAD.to_owned();
+    text += &format!("#group_begin 1 0 0 0 0 1 0 2.2 0 0 1 0 0 0 0 1\n{}#group_end\n", each(1));
+    text += "#group_begin 1 0 0 0 0 1 0 -2.6 0 0 1 1.2 0 0 0 1
+        #group_begin .96 .28 0 0 -.28 .96 0 0 0 0 1 0 0 0 0 1\n";
+    text += &format!("#group_begin .8 .3 0 .3 0 1.3 0 2.4 0 .3 .7 -1 0 0 0 1\n{}#group_end\n", each(0));
+    text += "#group_end\n#group_end\n";
+    text += &format!(
+        "#group_begin 1 0 0 0 0 -.95 .3 -1.6 0 .3 .95 .5 0 0 0 1\n#group_begin -1 0 0 .3 0 1 0 0 0 0 1 0 0 0 0 1\n{}",
+        each(3)
+    );
+    text += "#group_end\n#group_end\n#shape_box 2 0 -3 0 14 .2 9\n";
+    text
+}
+
+fn cells() -> Vec<u8> {
+    let pixel = |at: usize| match (at % 8 + at / 8) % 3 {
+        0 => [0.9, 0.8, 0.2],
+        1 => [0.2, 0.4, 0.8],
+        _ => [0.8, 0.3, 0.3],
+    };
+    let samples: Vec<f32> = (0..64).flat_map(pixel).collect();
+    let image = Image::from_samples(8, 8, dotray_image::Channels::Rgb, samples).expect("an image");
+    encode(&image, Format::Png, &EncodeOptions::default()).expect("a file")
+}
+
+#[test]
+fn every_shape_is_drawn_as_it_is_traced() {
+    let Some(mut raster) = raster() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("every.ray");
+    std::fs::write(&path, every_shape()).expect("written");
+    std::fs::write(folder.path().join("cells.png"), cells()).expect("written");
+    // From outside, from above, from within shapes, from near.
+    let cameras = [
+        ("front", "0 3 11  0 -.22 -1  0 1 0  .36"),
+        ("above", "1 11 2  -.05 -1 -.2  0 0 -1  .4"),
+        ("below", "-2 -2.4 5  .3 .5 -1  .1 1 0  .5"),
+        ("within", "-1.4 2.2 .1  1 .1 -.3  0 1 0  .6"),
+        ("near", "2.4 2.9 .9  -.3 -.6 -.9  0 1 0  .7"),
+    ];
+    for (name, camera) in cameras {
+        std::fs::write(&path, every_shape().replace("0 3 11  0 -.22 -1  0 1 0  .36", camera))
+            .expect("written");
+        let opened = opened(&path);
+        load(&mut raster, &opened);
+        let picture = drawn(&mut raster, &opened);
+        let share = unlike(name, &picture, &rendered(opened));
+        println!("{name}: {share:.4}");
+        assert!(share < 0.01, "{name}: {share} of the pixels are off");
+    }
+}
+
+#[test]
+fn scenes_of_other_dialects_are_drawn_as_they_are_traced() {
+    let Some(mut raster) = raster() else { return };
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    // A torus is made of triangles, which its shading hides and its outline does not.
+    for (name, most) in [
+        ("dialects/pipes-hmc", 0.005),
+        ("dialects/ring-jhu", 0.01),
+        ("dialects/table-uva", 0.005),
+        ("dialects/blocks-unisa", 0.005),
+        ("virus", 0.005),
+        ("slides", 0.005),
+    ] {
+        let extension = if name.ends_with("unisa") { "scene" } else { "ray" };
+        let opened = opened(&scenes.join(name).with_extension(extension));
+        load(&mut raster, &opened);
+        let picture = drawn(&mut raster, &opened);
+        let share = unlike(&name.replace('/', "-"), &picture, &rendered(opened));
+        println!("{name}: {share:.4}");
+        assert!(share < most, "{name}: {share} of the pixels are off");
+    }
+}
+
+/// A scene of so many shapes that a driver in software begins with a draft.
+#[test]
+fn a_draft_looks_alike_and_the_whole_comes_after_it() {
+    let Some(mut raster) = raster() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("many.ray");
+    let mut text = "#camera 0 0 3 0 0 -1 0 1 0 .4 #background .2 .3 .5 #light_dir 1 1 1 -1 -1 -1
+        #material .1 .1 .1 .8 .6 .4 0 0 0 0 0 0 0 0 1 -1 !m!\n"
+        .to_owned();
+    for (x, y) in (0..320).flat_map(|x| (0..320).map(move |y| (x, y))) {
+        let at = |k: i32| f64::from(k) / 160.0 - 1.0;
+        text += &format!("#shape_sphere 0 {} {} {} .004\n", at(x), at(y), at((x * 7 + y * 13) % 320));
+    }
+    text += "#shape_box 0 0 -.9 0 2 .1 2\n";
+    std::fs::write(&path, text).expect("written");
+    let opened = opened(&path);
+    load(&mut raster, &opened);
+    raster.draw(&opened.document.camera, [WIDTH, HEIGHT], false).expect("a picture");
+    let is_draft = raster.is_unfinished();
+    let drawn = drawn(&mut raster, &opened);
+    let count = opened.document.shape_count;
+    // Hidden shapes are in neither.
+    let mut hidden = Hidden::default();
+    hidden.hide(0..count - 1);
+    raster.hide(&hidden);
+    let alone = self::drawn(&mut raster, &opened);
+    assert!(unlike("alone", &drawn, &alone) > 0.1);
+    let share = unlike("many", &drawn, &rendered(opened));
+    println!("draft: {is_draft}, {share:.4}");
+    assert!(share < 0.01, "{share} of the pixels are off");
+}
