@@ -56,6 +56,7 @@ fn scene(spheres: Vec<Sphere>, camera: &[f64; 13]) -> Scene {
         k_transmission: 0.0,
         index_of_refraction: 1.0,
         texture: None,
+        bump: None,
         text: String::new(),
         weights: None,
     };

@@ -9,11 +9,11 @@ use crate::simd::Simd;
 ///
 /// The leaf calls test items and answer with the new upper bound of t: the old one, the t of a nearer hit, or
 /// `f64::NEG_INFINITY` to end this ray's walk (an occlusion ray that is blocked). The walk guarantees that every item
-/// whose surface crosses the ray at some `t` in `[t_min, bound]` is shown at least once, where `bound` is what the calls
-/// before answered; items may be shown more than once (octree and BSP), in any order.
+/// whose surface crosses the ray at some `t` in `[t_min, bound]` is shown at least once, where `bound` is what the
+/// calls before answered; items may be shown more than once (octree and BSP), in any order.
 ///
-/// The walks of trees are compiled once a SIMD level and batch, with the level's token at hand, so that what tests a leaf
-/// need not look the level up for every leaf; octree, BSP and brute force call through `dyn Batch`.
+/// The walks of trees are compiled once a SIMD level and batch, with the level's token at hand, so that what tests a
+/// leaf need not look the level up for every leaf; octree, BSP and brute force call through `dyn Batch`.
 pub trait Batch {
     /// Tests the items at positions `first .. first + count` (of the accelerator's own order,
     /// [`crate::Built::order`]) for ray `i`.

@@ -183,9 +183,9 @@ pub fn words_of(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
     words
 }
 
-/// Cuts tiles into `count` pieces of about the same cost, in order, the last of which are empty where there are fewer to
-/// be made: a scheduler's tasks have numbers of their own, and each finds its piece. `costs` are those of each picture's
-/// tiles.
+/// Cuts tiles into `count` pieces of about the same cost, in order, the last of which are empty where there are fewer
+/// to be made: a scheduler's tasks have numbers of their own, and each finds its piece. `costs` are those of each
+/// picture's tiles.
 pub fn cut(frames: &[Option<u32>], costs: &[&[f64]], count: u32) -> Vec<Piece> {
     let total: f64 = costs.iter().map(|tiles| tiles.iter().sum::<f64>()).sum();
     let mut pieces: Vec<Piece> = Vec::new();

@@ -132,7 +132,7 @@ impl Baked {
     pub fn lay(
         lists: &Lists,
         numbers: &[u32],
-        accelerator: &Accelerator,
+        accelerator: Option<&Accelerator>,
         material: impl Fn(&Run, i32) -> u32 + Sync,
     ) -> Self {
         let mut all = Self::default();
@@ -243,9 +243,11 @@ impl Baked {
     }
 
     /// Ends the lists; slots that say nothing go.
-    fn finish(&mut self, accelerator: &Accelerator) {
+    fn finish(&mut self, accelerator: Option<&Accelerator>) {
         let count = self.numbers.len();
-        self.culls.finish(count, accelerator);
+        if let Some(accelerator) = accelerator {
+            self.culls.finish(count, accelerator);
+        }
         self.only = Form::ALL.into_iter().find(|&form| count > 0 && self.len_of(form) == count);
         if self.only.is_some() {
             self.slots = Vec::new();
@@ -452,6 +454,7 @@ mod tests {
     use super::RunIndex;
     use dotray_scene::model::ShapeKind;
     use dotray_scene::resolved::Run;
+    use dotray_scene::resolved::RunColors;
     use dotray_scene::span::FileId;
 
     #[test]
@@ -468,7 +471,7 @@ mod tests {
                 frame: 0,
                 material_base: 0,
                 first_shape: count,
-                colors: None,
+                colors: RunColors::No,
             });
             count += length;
         }

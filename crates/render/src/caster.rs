@@ -133,7 +133,7 @@ impl Caster {
         let start = Instant::now();
         let material = |run: &Run, written: i32| run.material(written).unwrap_or(default_material);
         let Resolved { runs, frames, files, .. } = resolved;
-        let shapes = Shapes::bake(runs, frames, files, &numbers, &accelerator, material);
+        let shapes = Shapes::bake(runs, frames, files, &numbers, Some(&accelerator), material);
         seconds.push(("bake", start.elapsed().as_secs_f64()));
         Self { shapes, accelerator, seconds, level: level() }
     }

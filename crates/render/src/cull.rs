@@ -162,8 +162,8 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// Ends the table at `count` positions, and turns its leaves round. Lanes behind a leaf's last shape read numbers of
-    /// the next leaf, or of the few that are put behind the last one.
+    /// Ends the table at `count` positions, and turns its leaves round. Lanes behind a leaf's last shape read numbers
+    /// of the next leaf, or of the few that are put behind the last one.
     fn finish(&mut self, count: usize, accelerator: &Accelerator) {
         if self.numbers.is_empty() {
             return;

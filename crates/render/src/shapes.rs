@@ -55,18 +55,19 @@ pub struct Shapes {
 }
 
 impl Shapes {
-    /// Lays down the shapes of these numbers, position by position, as the accelerator's leaves want them: where it
-    /// shows blocks, what rules shapes out in single precision is laid down as well. `material` turns a run and the number written there into the scene's
-    /// material number.
+    /// Lays down the shapes of these numbers, position by position, as the accelerator's leaves want them: where
+    /// there is one that shows blocks, what rules shapes out in single precision is laid down as well. `material` turns
+    /// a run and the number written there into the scene's material number.
     pub fn bake(
         runs: Vec<Run>,
         frames: Vec<Transform>,
         files: Vec<SceneFile>,
         numbers: &[u32],
-        accelerator: &Accelerator,
+        accelerator: Option<&Accelerator>,
         material: impl Fn(&Run, i32) -> u32 + Sync,
     ) -> Self {
-        let cull_frame = accelerator.shows_blocks().then(|| Frame::around(accelerator.bounds()));
+        let accelerator = accelerator.filter(|accelerator| accelerator.shows_blocks());
+        let cull_frame = accelerator.map(|accelerator| Frame::around(accelerator.bounds()));
         let index = RunIndex::new(&runs, numbers.len() as u32);
         let mut lists = Lists { runs, frames, files, index, patterns: Vec::new(), cull_frame };
         let baked = Baked::lay(&lists, numbers, accelerator, material);

@@ -167,8 +167,8 @@ fn descend<S: Simd, B: Batch>(
     tests
 }
 
-/// Walks the rays of a packet that few others go along with, one by one from a child down. Returns whether any bound has
-/// changed, and the number of box tests.
+/// Walks the rays of a packet that few others go along with, one by one from a child down. Returns whether any bound
+/// has changed, and the number of box tests.
 #[inline(always)]
 fn alone<S: Simd, B: Batch>(
     simd: S,

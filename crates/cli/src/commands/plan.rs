@@ -95,15 +95,17 @@ pub fn run(typed: &PlanArgs, color: When) -> Result<(), Failure> {
     if plan.quiet {
         return Ok(());
     }
+    put(said(&made, looks.seconds * frames.len() as f64).as_bytes())
+}
+
+/// What is said about a plan whose pieces take so many seconds together.
+fn said(made: &PiecePlan, seconds: f64) -> String {
     let pieces = made.pieces.len();
     let full = made.pieces.iter().filter(|piece| !piece.parts.is_empty()).count();
-    let seconds = looks.seconds * frames.len() as f64 / full.max(1) as f64;
+    let seconds = seconds / full.max(1) as f64;
     let empty = if full < pieces { format!(", of which {} are empty", pieces - full) } else { String::new() };
-    put(format!(
-        "{pieces} pieces, 0 to {}{empty}; about {seconds:.1} s of one core each\n",
-        pieces.saturating_sub(1)
-    )
-    .as_bytes())
+    let last = pieces.saturating_sub(1);
+    format!("{pieces} pieces, 0 to {last}{empty}; about {seconds:.1} s of one core each\n")
 }
 
 /// Refuses what pieces cannot have.
