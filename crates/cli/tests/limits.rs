@@ -67,9 +67,9 @@ fn a_few_packed_bytes_take_no_more_memory_than_is_allowed() {
     let Some(bytes) = packed("gzip", &text) else { return };
     assert!(bytes.len() < 10_000);
     folder.put("bomb.ray.gz", &bytes);
-    folder.run("check bomb.ray.gz --max-memory 2M").expect(1).says("larger than 2097152 bytes");
-    folder.run("check bomb.ray.gz --max-memory 2M --max-file-size 4M").expect(0);
-    folder.run("check bomb.ray.gz --max-memory 4M").expect(0);
+    folder.run("info bomb.ray.gz --max-memory 2M").expect(1).says("larger than 2097152 bytes");
+    folder.run("info bomb.ray.gz --max-memory 2M --max-file-size 4M").expect(0);
+    folder.run("info bomb.ray.gz --max-memory 4M").expect(0);
 }
 
 #[test]
