@@ -28,11 +28,14 @@ pub fn load_options(reading: &ReadingArgs) -> LoadOptions {
 /// What a file may make the reader do.
 pub fn load_limits(typed: &LimitArgs) -> load::Limits {
     let defaults = load::Limits::default();
+    // A text is in memory while it is read, and a few packed bytes can stand for any number of them. What is small
+    // is read in any case, so that the estimate can say what it would take.
+    let of_memory = typed.max_memory.map_or_else(machine_memory, |size| size.0).max(1 << 20);
     let count = |typed: Option<u32>, default: usize| {
         typed.map_or(default, |n| usize::try_from(n).unwrap_or(usize::MAX))
     };
     load::Limits {
-        max_file_bytes: typed.max_file_size.map_or(defaults.max_file_bytes, |size| size.0),
+        max_file_bytes: typed.max_file_size.map_or(of_memory.min(defaults.max_file_bytes), |size| size.0),
         max_include_depth: count(typed.max_include_depth, defaults.max_include_depth),
         max_includes: count(typed.max_includes, defaults.max_includes),
         max_shapes: typed.max_shapes.unwrap_or(defaults.max_shapes),

@@ -61,6 +61,18 @@ fn packed_scenes_and_includes_are_read_whatever_their_names() {
 }
 
 #[test]
+fn a_few_packed_bytes_take_no_more_memory_than_is_allowed() {
+    let folder = Folder::new();
+    let text = [&b"#shape_sphere -1  0 0 0  1\n"[..], &vec![b' '; 3 << 20]].concat();
+    let Some(bytes) = packed("gzip", &text) else { return };
+    assert!(bytes.len() < 10_000);
+    folder.put("bomb.ray.gz", &bytes);
+    folder.run("info bomb.ray.gz --max-memory 2M").expect(1).says("larger than 2097152 bytes");
+    folder.run("info bomb.ray.gz --max-memory 2M --max-file-size 4M").expect(0);
+    folder.run("info bomb.ray.gz --max-memory 4M").expect(0);
+}
+
+#[test]
 fn nothing_outside_of_a_folder_is_read() {
     let folder = Folder::new();
     std::fs::create_dir_all(folder.path("in/deep")).unwrap();

@@ -109,6 +109,8 @@ impl<'a> Lexer<'a> {
     /// Before the first token, after a byte order mark.
     pub fn new(bytes: &'a [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        // Programs for DOS ended their texts with this sign.
+        let bytes = bytes.strip_suffix(b"\x1a").unwrap_or(bytes);
         Self { bytes, at }
     }
 
@@ -339,6 +341,12 @@ mod tests {
             (TokenKind::Text, "!!"),
         ];
         assert_eq!(tokens(text), expected);
+    }
+
+    #[test]
+    fn the_end_sign_of_dos_ends_a_text() {
+        assert_eq!(tokens("#a 1\r\n\x1a"), [(TokenKind::Directive, "#a"), (TokenKind::Word, "1")]);
+        assert_eq!(tokens("1\x1a 2"), [(TokenKind::Word, "1\x1a"), (TokenKind::Word, "2")]);
     }
 
     #[test]

@@ -83,6 +83,8 @@ const BEGINNINGS: &[(&[u8], &str)] = &[
     (b"%!PS", "a PostScript document"),
     (b"PK\x03\x04", "a ZIP archive"),
     (b"glTF", "a glTF mesh"),
+    (b"<<<<<<<", "a text with marks of a merge that was not finished"),
+    (b"version https://git-lfs", "a pointer of Git LFS, whose file was not fetched"),
     (b"<", "an XML or HTML document"),
     (b"{", "a JSON document"),
 ];

@@ -9,6 +9,7 @@ use crate::directive::Arguments;
 use crate::directive::Directive;
 use crate::directive::Form;
 use crate::directive::Spec;
+use crate::directive::find_in;
 use crate::lex;
 use crate::lex::Lexer;
 use crate::lex::NumberFault;
@@ -161,6 +162,11 @@ impl Parser<'_> {
             NumberFault::NoNumber if has(b",") => error
                 .label("expected a decimal number")
                 .help("numbers are parted by blanks; the decimal sign is `.`"),
+            NumberFault::NoNumber
+                if text.strip_suffix(b"f").is_some_and(|rest| lex::number(rest).is_ok()) =>
+            {
+                error.label("expected a decimal number").help("leave out the `f` at its end")
+            }
             NumberFault::NoNumber => error.label("expected a decimal number"),
         });
         false
@@ -170,7 +176,9 @@ impl Parser<'_> {
         let Call { spec, start, count, .. } = self.call;
         let word = spec.word;
         let at_word = self.span(start, after_word);
-        if let [form] = spec.forms {
+        if spec.directive == Directive::Material && count == 18 && self.dialect != Dialect::Hmc {
+            self.half_converted(at_word);
+        } else if let [form] = spec.forms {
             let error =
                 if count < form.count { self.missing(form, at_word) } else { self.surplus(form, at_word) };
             let error = error.note(usage(word, form));
@@ -194,6 +202,19 @@ impl Parser<'_> {
             self.sink.error(spec.forms.iter().fold(error, |error, form| error.note(usage(word, form))));
         }
         self.first_faulty_token();
+    }
+
+    /// A material between those of two dialects: which of them is meant nobody can say.
+    fn half_converted(&mut self, at_word: Span) {
+        let message = "`#material` takes 17 arguments, in the dialects `uva` and `jhu` 19, but 18 are given";
+        let ends_in_text = self.tokens.get(17).is_some_and(|token| token.kind == TokenKind::Text);
+        let label = if ends_in_text { "one too many, or one too few" } else { "perhaps its `!!` is missing" };
+        let error = Diagnostic::error("argument-count", message).at(at_word).label(label);
+        let usages = [Dialect::Slides, Dialect::Uva].into_iter().filter_map(|dialect| {
+            let form = find_in(dialect, b"#material")?.forms.first()?;
+            Some(format!("in `{dialect}` {}", usage("#material", form)))
+        });
+        self.sink.error(usages.fold(error, Diagnostic::note));
     }
 
     fn surplus(&self, form: &Form, at_word: Span) -> Diagnostic {
