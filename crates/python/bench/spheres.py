@@ -87,8 +87,9 @@ def with_tachyon(count, threads, out):
     numbers = " ".join
     with tempfile.NamedTemporaryFile("w", suffix=".dat", delete=False) as text:
         text.write(
-            f"BEGIN_SCENE\nRESOLUTION {SIZE[0]} {SIZE[1]}\nCAMERA\n ZOOM {0.5 / math.tan(ANGLE):.9g}\n "
-            f"ASPECTRATIO 1.0\n ANTIALIASING 0\n RAYDEPTH 5\n CENTER {numbers(map(str, EYE))}\n VIEWDIR {numbers(map(str, way))}\n "
+            f"BEGIN_SCENE\nRESOLUTION {SIZE[0]} {SIZE[1]}\n"
+            f"CAMERA\n ZOOM {0.5 / math.tan(ANGLE):.9g}\n ASPECTRATIO 1.0\n ANTIALIASING 0\n RAYDEPTH 5\n "
+            f"CENTER {numbers(map(str, EYE))}\n VIEWDIR {numbers(map(str, way))}\n "
             f"UPDIR {numbers(map(str, up))}\nEND_CAMERA\nBACKGROUND 0 0 0\n"
             f"DIRECTIONAL_LIGHT DIRECTION {numbers(map(str, LIGHT))} COLOR 1 1 1\n"
         )

@@ -1,5 +1,5 @@
-"""Ray's and MPI's own schedulers and workers, one of which is killed in the middle of a film: `test_engines.py` runs it as
-`python more_engines.py ray FOLDER` in a namespace of its own, and as
+"""Ray's and MPI's own schedulers and workers, one of which is killed in the middle of a film: run by `test_engines.py`
+as `python more_engines.py ray FOLDER` in a namespace of its own, and as
 `mpiexec -n 3 python -m mpi4py.futures more_engines.py mpi FOLDER [kill]`. Prints what it found as JSON."""
 
 import json
