@@ -3,7 +3,7 @@
     python spheres.py all [COUNT]                   every program that is there, one process each, one thread each
     python spheres.py dotray|ovito-tachyon|ovito-ospray|tachyon COUNT THREADS
 
-Spheres are uniform in the unit cube, N π r² = 2 with radii up to a quarter more or less, coloured one by one, lit by one
+Spheres are uniform in the unit cube, N π r² = 2 with radii up to a quarter more or less, coloured one by one, lit by a
 directional light. OVITO comes by `pip install ovito`, Tachyon by `apt-get install tachyon-bin-nox`; the latter reads
 arrays from text only, so its seconds include that. Prints a line of JSON for each program: CPU and wall seconds from
 arrays in memory to the picture's file, and the peak of memory in MB, the arrays included.
@@ -87,8 +87,9 @@ def with_tachyon(count, threads, out):
     numbers = " ".join
     with tempfile.NamedTemporaryFile("w", suffix=".dat", delete=False) as text:
         text.write(
-            f"BEGIN_SCENE\nRESOLUTION {SIZE[0]} {SIZE[1]}\nCAMERA\n ZOOM {0.5 / math.tan(ANGLE):.9g}\n ASPECTRATIO 1.0\n "
-            f"ANTIALIASING 0\n RAYDEPTH 5\n CENTER {numbers(map(str, EYE))}\n VIEWDIR {numbers(map(str, way))}\n "
+            f"BEGIN_SCENE\nRESOLUTION {SIZE[0]} {SIZE[1]}\n"
+            f"CAMERA\n ZOOM {0.5 / math.tan(ANGLE):.9g}\n ASPECTRATIO 1.0\n ANTIALIASING 0\n RAYDEPTH 5\n "
+            f"CENTER {numbers(map(str, EYE))}\n VIEWDIR {numbers(map(str, way))}\n "
             f"UPDIR {numbers(map(str, up))}\nEND_CAMERA\nBACKGROUND 0 0 0\n"
             f"DIRECTIONAL_LIGHT DIRECTION {numbers(map(str, LIGHT))} COLOR 1 1 1\n"
         )
@@ -131,7 +132,8 @@ def main():
     threads = int(rest[1]) if len(rest) > 1 else 1
     if threads == 1 and hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    out = Path(os.environ.get("OUT", tempfile.gettempdir()), f"spheres-{program}.{'bmp' if program == 'tachyon' else 'png'}")
+    name = f"spheres-{program}.{'bmp' if program == 'tachyon' else 'png'}"
+    out = Path(os.environ.get("OUT", tempfile.gettempdir()), name)
     told = {"program": program, "spheres": count, "threads": threads}
     if program == "tachyon":
         begun, cpu, peak, _ = with_tachyon(count, threads, out)

@@ -49,7 +49,7 @@ def test_ray(tmp_path, capsys):
     start = time.monotonic()
     done, found = run(command)
     assert found is not None, done.stdout + done.stderr
-    assert found["same"] and found["picture"], found
+    assert found["same"] and found["picture"] and found["layers"], found
     with capsys.disabled():
         print(
             f"\n  Ray, a worker killed: 24 of 24 frames, {found['worker']:.1f} s; one of two nodes killed: "
@@ -85,6 +85,6 @@ def test_mpi(tmp_path, quiet, capsys):
     assert found["digest"] == digest and 0 < found["there"] < 24, found
     with capsys.disabled():
         print(
-            f"\n  MPI, one of two workers killed: the job ended after {lost:.1f} s with {found['there']} of 24 frames on "
-            f"the disk; begun again, the rest took {found['seconds']:.1f} s ({plain['seconds']:.1f} s undisturbed)"
+            f"\n  MPI, one of two workers killed: the job ended after {lost:.1f} s with {found['there']} of 24 frames "
+            f"on disk; begun again, the rest took {found['seconds']:.1f} s ({plain['seconds']:.1f} s undisturbed)"
         )

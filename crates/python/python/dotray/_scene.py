@@ -197,7 +197,7 @@ class Scene(Container):
         return builder
 
     def _add_view(self, builder: _dotray.Builder, width: int, height: int) -> bool:
-        """Camera, background and light, where they are not those of the file that the scene began with; whether one is."""
+        """Camera, background and light where they are not those of the file that the scene began with; whether any is."""
         camera, light = self._view(width, height)
         if camera is not None:
             builder.camera(camera)
@@ -434,7 +434,8 @@ class Scene(Container):
             others = [str(name) for name, _ in builder.textures()] + [name for name in base.files if name != base.path]
             if others:
                 raise ValueError(f"path is {path}: expected a place beside {base.path}, which names {others[0]}")
-        names = {texture: f"{path.stem}-texture-{i}{texture.extension}" for i, texture in enumerate(textures(self._items))}
+        found = enumerate(textures(self._items))
+        names = {texture: f"{path.stem}-texture-{i}{texture.extension}" for i, texture in found}
         text = self._text(names, width, height)
         for texture, name in names.items():
             _dotray.write_file(path.with_name(name), texture.data)

@@ -12,8 +12,9 @@ Nothing of this starts an engine: it uses one that is there. With Dask:
 True
 
 A picture is cut into pieces, as ``dotray plan`` does it, each a function of scene, options and place alone: whoever
-computes one, and however often, the bytes are those of one machine, and a checksum tells when they are not. The scene travels to each worker once; pieces come back in any order and go
-to disk as they come; what is lost with a worker is computed again by another.
+computes one, and however often, the bytes are those of one machine, and a checksum tells when they are not. The scene
+travels to each worker once; pieces come back in any order and go to disk as they come; what is lost with a worker is
+computed again by another.
 """
 
 from __future__ import annotations
