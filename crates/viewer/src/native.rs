@@ -77,7 +77,8 @@ pub fn main() -> ExitCode {
         Err(error) => {
             eprintln!("rayview: cannot open a window: {error}");
             eprintln!(
-                "rayview: without a display, `rayview --serve` shows the same in a browser, and `Xvfb` gives one; without a GPU, Mesa's software drivers do"
+                "rayview: without a display, `rayview --serve` shows the same in a browser, and `Xvfb` gives one; \
+                 without a GPU, Mesa's software drivers do"
             );
             ExitCode::FAILURE
         }

@@ -1,4 +1,4 @@
-"""What the tests of the page share: a browser, the page's files on a server of their own, and a hand that knows the page.
+"""What the tests of the page share: a browser, the page's files on a server, and a hand that knows the page.
 
 The environment names the programs: CHROMIUM, DOTRAY and RAYVIEW; `run.sh` sets them.
 """
