@@ -14,6 +14,10 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// What stands beside the program on the page as it is.
 const AS_IT_IS: [&str; 4] = ["index.html", "page.css", "page.js", "tracer.js"];
 
+/// Where the Python package has the viewer for notebooks, and what of the page it needs.
+const NOTEBOOK: &str = "crates/python/python/dotray/web";
+const IN_A_NOTEBOOK: [&str; 2] = ["rayview.js", "rayview_bg.wasm.gz"];
+
 /// What `cargo xtask web` takes.
 #[derive(Debug, Args)]
 pub struct WebArgs {
@@ -50,6 +54,11 @@ pub fn run(arguments: &WebArgs) -> Result<(), String> {
             .map_err(|fault| format!("cannot copy `{}`: {fault}", from.display()))?;
     }
     let (whole, packed) = pack(&arguments.out.join("rayview_bg.wasm"))?;
+    for name in IN_A_NOTEBOOK {
+        let from = arguments.out.join(name);
+        std::fs::copy(&from, Path::new(NOTEBOOK).join(name))
+            .map_err(|fault| format!("cannot copy `{}`: {fault}", from.display()))?;
+    }
     println!("the page is in {}: {whole} bytes of program, {packed} packed", arguments.out.display());
     Ok(())
 }

@@ -18,9 +18,12 @@ fi
 bin=$PWD/$venv/bin
 [ "${target#/}" = "$target" ] || bin=$venv/bin
 "$bin/pip" install -q --disable-pip-version-check "maturin>=1.16,<2" numpy pytest hypothesis mypy tqdm Pillow \
-    nbconvert ipykernel "distributed>=2024"
+    nbconvert ipykernel "distributed>=2024" "anywidget>=0.9" jupyterlab playwright
 # MPI as a wheel; where it cannot be had, its test says that it is skipped.
 "$bin/pip" install -q --disable-pip-version-check mpi4py mpich || echo "python tests: no MPI to be had" >&2
+
+# The viewer for notebooks is a part of the wheel.
+[ -f crates/python/python/dotray/web/rayview_bg.wasm.gz ] || cargo xtask web
 
 rm -rf "$wheels"
 "$bin/maturin" build --release --locked --interpreter "$bin/python" --out "$wheels"

@@ -1,8 +1,8 @@
 //! `rayview --serve`: the page from this program, for machines without a display, with the tracing done here.
 //!
 //! It listens on 127.0.0.1 alone. Whoever wants anything must know the random token in the address, and must come from
-//! a page of this very address: a page of another origin, or a name that somebody else's server points here, is
-//! refused. What can be had is a fixed list of files and one socket; no path of a request ever reaches the disk.
+//! a page of this very address: pages of other origins, and names that others point here, are refused.
+//! What can be had is a fixed list of files and one socket; no path of a request ever reaches the disk.
 
 mod files;
 mod gate;

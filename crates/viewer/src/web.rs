@@ -9,8 +9,8 @@ use wasm_bindgen::closure::Closure;
 /// Runs what the JavaScript around the program asks for by its global `rayview`: with `canvas`, the element to draw in,
 /// the application; `say` is then a function that is told what goes on until there is something to see, and `tracer`,
 /// where there is one, what traces; `files` are pairs of a name and bytes to show at once, `small` says that there is
-/// little room, and `stop` ends the application once it has begun. Without a canvas the program is itself the tracer
-/// of a page.
+/// little room, and `stop` ends the application once it has begun. Without a canvas the program is itself the tracer of
+/// a page.
 pub fn run() {
     match Page::find() {
         Ok(page) => wasm_bindgen_futures::spawn_local(show(page)),

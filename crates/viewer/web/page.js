@@ -5,7 +5,7 @@ const message = document.getElementById("message");
 const say = (text) => { message.textContent = text; };
 
 const stopped = (fault) =>
-  say(`The application has stopped; load the page again. Perhaps the scene needs more memory than a page has. (${fault})`);
+  say(`The application has stopped; load the page again. Perhaps it needs more memory than there is. (${fault})`);
 addEventListener("error", (event) => stopped(event.message));
 addEventListener("unhandledrejection", (event) => stopped(event.reason));
 

@@ -1,4 +1,4 @@
-// The tracer beside the page: the same program without a canvas. The first message is the program, the others are its own.
+// The tracer beside the page: the same program without a canvas. The first message is the program.
 import start from "./rayview.js";
 
 onmessage = ({ data }) => {

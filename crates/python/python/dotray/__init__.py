@@ -10,8 +10,11 @@ Three lines make a picture:
 (120, 160, 3)
 
 :class:`Scene` takes arrays and renders them, :func:`load` reads a ``.ray`` file, :class:`RayCaster` answers batches of
-rays, and :mod:`dotray.cluster` renders on many machines.
+rays, :mod:`dotray.cluster` renders on many machines, and :mod:`dotray.jupyter` shows a scene in a notebook.
 """
+
+import importlib
+from typing import Any
 
 from dotray._caster import INVALID_ID, RayCaster
 from dotray._dotray import VERSION as __version__
@@ -41,3 +44,10 @@ __all__ = [
     "compare",
     "load",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """The module ``jupyter`` comes when it is asked for: it needs a package that few have."""
+    if name == "jupyter":
+        return importlib.import_module("dotray.jupyter")
+    raise AttributeError(f"module 'dotray' has no attribute {name!r}")

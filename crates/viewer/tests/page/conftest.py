@@ -1,4 +1,4 @@
-"""What the tests of the page share: a browser, the page's files on a server of their own, and a hand that knows the page.
+"""What the tests of the page share: a browser, the page's files on a server, and a hand that knows the page.
 
 The environment names the programs: CHROMIUM, DOTRAY and RAYVIEW; `run.sh` sets them.
 """
@@ -63,15 +63,24 @@ def site():
 
 
 @pytest.fixture(scope="session")
-def browser():
-    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
-    flags += ["--force-color-profile=srgb", "--disable-dev-shm-usage"]
+def playwright():
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=os.environ["CHROMIUM"], args=flags, chromium_sandbox=False
-        )
-        yield browser
-        browser.close()
+        yield playwright
+
+
+def launched(playwright, *more):
+    """A Chromium that draws by software, with these flags."""
+    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+    flags += ["--force-color-profile=srgb", "--disable-dev-shm-usage", *more]
+    path = os.environ["CHROMIUM"]
+    return playwright.chromium.launch(executable_path=path, args=flags, chromium_sandbox=False)
+
+
+@pytest.fixture(scope="session")
+def browser(playwright):
+    browser = launched(playwright)
+    yield browser
+    browser.close()
 
 
 def rendered(folder, name, size, *more):
@@ -90,8 +99,10 @@ class Viewer:
     """A page with the viewer on it, and a hand."""
 
     def __init__(self, browser, address, scale=1, size=(1100, 640), prepare=lambda page: None):
+        # A dense screen is the browser's: where a page is only told of one, its canvas has too few pixels.
         viewport = {"width": size[0], "height": size[1]}
-        self.context = browser.new_context(viewport=viewport, device_scale_factor=scale, color_scheme="dark")
+        screen = {"viewport": viewport} if scale == 1 else {"no_viewport": True}
+        self.context = browser.new_context(color_scheme="dark", **screen)
         self.scale = scale
         self.page = self.context.new_page()
         self.requests, self.faults = [], []
@@ -142,7 +153,7 @@ class Viewer:
 
     def shot(self):
         """The view's pixels; the pointer is put where it shows nothing."""
-        self.page.mouse.move(5, self.page.viewport_size["height"] - 5)
+        self.page.mouse.move(5, self.page.evaluate("innerHeight") - 5)
         time.sleep(0.5)
         x, y, width, height = self.view()
         clip = {"x": x, "y": y, "width": width / self.scale, "height": height / self.scale}

@@ -1,7 +1,7 @@
 """The page, with files that are dropped on it: nothing is served but the page itself."""
 
 import numpy
-from conftest import SCENE, Viewer, cells, pixels, rendered
+from conftest import SCENE, Viewer, cells, launched, pixels, rendered
 
 BOTH = {"shapes.ray": SCENE.encode(), "cells.png": cells()}
 
@@ -77,14 +77,16 @@ def test_files_can_be_picked(viewer, scene):
     viewer.wait("data-shapes", "3")
 
 
-def test_dense_screens_have_dense_pictures(browser, site, scene):
-    viewer = Viewer(browser, site, scale=2, size=(800, 400))
+def test_dense_screens_have_dense_pictures(playwright, site, scene):
+    browser = launched(playwright, "--force-device-scale-factor=2", "--window-size=800,400")
+    viewer = Viewer(browser, site, scale=2)
     viewer.drop(BOTH)
     traced = viewer.trace()
+    assert viewer.page.evaluate("devicePixelRatio") == 2
     # Twice as many pixels as points, between the panels.
-    assert abs(viewer.view()[2] - 2 * (800 - 300 - 310)) < 20
+    assert abs(viewer.view()[2] - 2 * (viewer.page.evaluate("innerWidth") - 300 - 310)) < 20
     assert (traced == pixels(rendered(scene, "shapes.ray", viewer.view()[2:]))).all()
-    viewer.close()
+    browser.close()
 
 
 def test_a_page_without_workers_traces_by_itself(browser, site, scene):
