@@ -128,9 +128,14 @@ impl<'a> Stage<'a> {
         });
     }
 
-    /// Clicks a number and types another.
-    fn set(&self, place: (i32, i32), number: &str) {
-        self.click(place);
+    /// Clicks a number and, once it can be edited, types another.
+    fn set(&self, desk: &Desk, (x, y): (i32, i32), number: &str) {
+        self.window.pointer(x, y);
+        std::thread::sleep(Duration::from_secs(2));
+        let field = || desk.part([x as usize - 24, y as usize - 9, 48, 18]);
+        let before = field();
+        self.click((x, y));
+        desk.until("the number can be edited", || field() != before);
         self.window.write(number);
         self.window.key("Return");
     }
@@ -156,9 +161,9 @@ fn numbers_that_are_typed_are_written_back_and_nothing_else() {
     stage.window.key("t");
     let edited = SCENE.replace(".80 .3 .2", ".80 0.75 .2").replace("#light_dir   .20", "#light_dir   0.9");
     stage.turn_to(&desk, MATERIALS_TAB);
-    stage.set(DIFFUSE_GREEN, ".75");
+    stage.set(&desk, DIFFUSE_GREEN, ".75");
     stage.turn_to(&desk, LIGHTS_TAB);
-    stage.set(SECOND_LIGHT_RED, ".9");
+    stage.set(&desk, SECOND_LIGHT_RED, ".9");
     stage.until_preview(&desk, "both are shown at once", &edited);
     desk.keep("edited");
     assert_eq!(stage.text(), SCENE, "nothing is written unasked");
