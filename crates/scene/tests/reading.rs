@@ -86,6 +86,7 @@ fn every_directive_is_read_as_its_example_says() {
         run(ShapeKind::Cuboid),
         run(ShapeKind::Cylinder),
         Item::Run { kind: ShapeKind::Cone, first: 0, count: 2 },
+        Item::Run { kind: ShapeKind::Open, first: 0, count: 2 },
         run(ShapeKind::Triangle),
         run(ShapeKind::IndexedTriangle),
         Item::Instance(0),
