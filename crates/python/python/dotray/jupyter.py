@@ -16,6 +16,7 @@ except ImportError as missing:
     raise ImportError("dotray.jupyter needs anywidget: pip install anywidget") from missing
 
 from dotray._scene import Scene
+from dotray._tree import textures
 
 __all__ = ["Viewer", "view"]
 
@@ -72,7 +73,7 @@ def view(scene: Scene, height: int = 480) -> Viewer:
 
 def _files(scene: Scene) -> list[tuple[str, bytes]]:
     """The scene as a file, and the files that it names."""
-    names = scene._textures()
+    names = textures(scene._items)
     files = [("scene.ray", scene._text(names, 640, 480).encode())]
     files += [(name, texture.data) for texture, name in names.items()]
     if scene._base is not None:
