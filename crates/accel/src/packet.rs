@@ -124,6 +124,16 @@ impl Group {
         }
     }
 
+    /// The largest absolute error of any ray.
+    #[inline(always)]
+    fn most_slack(&self) -> f64 {
+        let mut most = [0.0; 4];
+        for slack in self.slack.chunks_exact(most.len()) {
+            (0..most.len()).for_each(|lane| most[lane] = f64::max(most[lane], slack[lane]));
+        }
+        most.into_iter().fold(0.0, f64::max)
+    }
+
     /// Which lanes still look for something, bit by bit.
     #[inline(always)]
     pub fn alive(&self) -> u32 {
@@ -361,8 +371,24 @@ impl Packet {
             alive.add(number % GROUPS, bound.simd_ge(f32x16::splat(simd, 0.0)).to_bitmask());
             largest = largest.max(bound);
         }
-        (alive, largest.to_array().into_iter().fold(ENDED, f32::max))
+        (alive, most_of(simd, largest))
     }
+}
+
+/// The least of all lanes.
+#[inline(always)]
+fn least_of<S: Simd>(simd: S, lanes: f32x16<S>) -> f32 {
+    let (low, high) = simd.split_f32x16(lanes);
+    let (low, high) = simd.split_f32x8(low.min(high));
+    low.min(high).to_array().into_iter().fold(f32::INFINITY, f32::min)
+}
+
+/// The most of all lanes.
+#[inline(always)]
+fn most_of<S: Simd>(simd: S, lanes: f32x16<S>) -> f32 {
+    let (low, high) = simd.split_f32x16(lanes);
+    let (low, high) = simd.split_f32x8(low.max(high));
+    low.max(high).to_array().into_iter().fold(f32::NEG_INFINITY, f32::max)
 }
 
 /// All rays of a packet at once: where their origins and reciprocal directions lie. A box that this beam misses is
@@ -381,34 +407,28 @@ pub struct Beam {
 
 impl Beam {
     /// Around all rays that have been pushed.
-    pub fn around(packet: &Packet) -> Self {
-        let slack = packet.groups.iter().flat_map(|group| group.slack).fold(0.0, f64::max);
+    #[inline(always)]
+    pub fn around<S: Simd>(simd: S, packet: &Packet) -> Self {
+        let slack = packet.groups.iter().map(Group::most_slack).fold(0.0, f64::max);
+        let all = |x| f32x16::splat(simd, x);
         let (mut low, mut high, mut inverse) = ([0.0; 3], [0.0; 3], [[0.0; 2]; 3]);
         for axis in 0..3 {
-            // Lane by lane first: many comparisons at once.
-            let mut least = [f32::INFINITY; LANES];
-            let mut most = [f32::NEG_INFINITY; LANES];
-            let mut slowest = [f32::INFINITY; LANES];
-            let mut fastest = [f32::NEG_INFINITY; LANES];
+            let (mut least, mut most) = (all(f32::INFINITY), all(f32::NEG_INFINITY));
+            let (mut slowest, mut fastest) = (least, most);
             for group in &packet.groups {
-                for lane in 0..LANES {
-                    let origin = group.origin[axis][lane];
-                    let (v, v_far) = (group.inverse[axis][lane], group.inverse_far[axis][lane]);
-                    least[lane] = least[lane].min(origin);
-                    most[lane] = most[lane].max(origin);
-                    slowest[lane] = slowest[lane].min(v).min(v_far);
-                    fastest[lane] = fastest[lane].max(v).max(v_far);
-                }
+                let load = |lanes: &[[f32; LANES]; 3]| f32x16::load_array_ref(simd, &lanes[axis]);
+                let (origin, v, v_far) =
+                    (load(&group.origin), load(&group.inverse), load(&group.inverse_far));
+                least = least.min(origin);
+                most = most.max(origin);
+                slowest = slowest.min(v.min(v_far));
+                fastest = fastest.max(v.max(v_far));
             }
-            let least = least.into_iter().fold(f32::INFINITY, f32::min);
-            let most = most.into_iter().fold(f32::NEG_INFINITY, f32::max);
+            let (least, most) = (least_of(simd, least), most_of(simd, most));
             let pad = packet.frame.pad(least.abs().max(most.abs()), slack);
             low[axis] = (least - pad).next_down();
             high[axis] = (most + pad).next_up();
-            inverse[axis] = [
-                slowest.into_iter().fold(f32::INFINITY, f32::min),
-                fastest.into_iter().fold(f32::NEG_INFINITY, f32::max),
-            ];
+            inverse[axis] = [least_of(simd, slowest), most_of(simd, fastest)];
         }
         let (mut near_origin, mut far_origin, mut far_side) = ([0.0; 3], [0.0; 3], [0; 3]);
         for axis in 0..3 {

@@ -29,6 +29,8 @@ pub mod texture;
 
 pub mod light;
 
+mod ways;
+
 mod cull;
 
 mod form;

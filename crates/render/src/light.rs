@@ -46,6 +46,34 @@ pub struct Lamp {
     attenuation: Attenuation,
 }
 
+/// What all points of a light have in common that is one point, or infinitely far away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// A point.
+    Point {
+        /// Where.
+        position: Vec3,
+        /// How its light fades.
+        attenuation: Attenuation,
+    },
+    /// Parallel light.
+    Parallel {
+        /// Against the light's way, of length 1.
+        towards: Vec3,
+    },
+}
+
+/// The way from a point of a surface to a point of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// L̂: of length 1.
+    pub towards: Vec3,
+    /// How far the light is; infinite for parallel light.
+    pub distance: f64,
+    /// F_ATTEN
+    pub fading: f64,
+}
+
 /// What one point of a light sends to one point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Incident {
@@ -62,15 +90,14 @@ impl Lamp {
         Self { color, position, attenuation }
     }
 
-    /// The light of one point lamp that has been moved to `position`; `None` at the lamp itself.
-    fn incident(&self, position: Vec3, point: Vec3) -> Option<Incident> {
+    /// The way to the lamp, which has been moved to `position`; `None` at the lamp itself.
+    fn way(&self, position: Vec3, point: Vec3) -> Option<Way> {
         let offset = position - point;
         let distance = offset.length();
         if !(distance > 0.0 && distance.is_finite()) {
             return None;
         }
-        let strength = self.color * self.fading(distance);
-        Some(Incident { towards: offset / distance, distance, strength })
+        Some(Way { towards: offset / distance, distance, fading: self.fading(distance) })
     }
 
     /// F_ATTEN
@@ -139,26 +166,51 @@ impl Light {
 
     /// What sample `index` of `count` sends to `point`; `None` where that is nothing.
     pub fn incident(&self, point: Vec3, index: u32, count: u32) -> Option<Incident> {
-        match self {
-            Self::Point(lamp) => lamp.incident(lamp.position, point),
+        let way = match self {
+            Self::Point(lamp) | Self::Spot { lamp, .. } => lamp.way(lamp.position, point)?,
+            Self::Directional { towards, .. } => {
+                Way { towards: *towards, distance: f64::INFINITY, fading: 1.0 }
+            }
+            Self::Area { lamp, radii, .. } => {
+                let (u, v) = disc_sample(index, count, turn_at(point));
+                lamp.way(lamp.position + radii[0] * u + radii[1] * v, point)?
+            }
+        };
+        self.along(way)
+    }
+
+    /// What comes along the way; `None` where that is nothing.
+    #[inline]
+    pub fn along(&self, way: Way) -> Option<Incident> {
+        let Way { towards, distance, fading } = way;
+        let strength = match self {
+            Self::Point(lamp) => lamp.color * fading,
+            Self::Directional { color, .. } => *color,
             Self::Spot { lamp, axis, cos_cutoff, exponent } => {
-                let mut incident = lamp.incident(lamp.position, point)?;
-                let cosine = -incident.towards.dot(*axis);
+                let cosine = -towards.dot(*axis);
                 if cosine < *cos_cutoff {
                     return None;
                 }
-                incident.strength *= fall_off(cosine, *exponent);
-                Some(incident)
+                lamp.color * fading * fall_off(cosine, *exponent)
             }
-            Self::Directional { color, towards } => {
-                Some(Incident { towards: *towards, distance: f64::INFINITY, strength: *color })
+            Self::Area { lamp, axis, .. } => {
+                if -towards.dot(*axis) <= 0.0 {
+                    return None;
+                }
+                lamp.color * fading
             }
-            Self::Area { lamp, axis, radii } => {
-                let (u, v) = disc_sample(index, count, turn_at(point));
-                let position = lamp.position + radii[0] * u + radii[1] * v;
-                let incident = lamp.incident(position, point)?;
-                (-incident.towards.dot(*axis) > 0.0).then_some(incident)
+        };
+        Some(Incident { towards, distance, strength })
+    }
+
+    /// Where all its light comes from; `None` for a light that many points stand for.
+    pub fn source(&self) -> Option<Source> {
+        match self {
+            Self::Point(lamp) | Self::Spot { lamp, .. } => {
+                Some(Source::Point { position: lamp.position, attenuation: lamp.attenuation })
             }
+            Self::Directional { towards, .. } => Some(Source::Parallel { towards: *towards }),
+            Self::Area { .. } => None,
         }
     }
 }

@@ -133,9 +133,11 @@ impl<'a> ShadePoint<'a> {
     /// what the light would give if nothing lay between.
     pub fn lit(&self, incident: &Incident, tint: &Tint) -> Vec3 {
         let cosine = self.normal.dot(incident.towards);
-        if cosine <= 0.0 {
-            return Vec3::ZERO;
-        }
+        if cosine <= 0.0 { Vec3::ZERO } else { self.lit_by(incident, cosine, tint) }
+    }
+
+    /// The same where n̂·L̂ is known and not at most 0.
+    pub fn lit_by(&self, incident: &Incident, cosine: f64, tint: &Tint) -> Vec3 {
         let diffuse = self.diffuse(cosine) * tint.diffuse;
         if self.highlight_is_lost(incident.towards, diffuse, tint) {
             return diffuse * incident.strength;

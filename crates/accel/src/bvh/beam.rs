@@ -66,20 +66,21 @@ pub fn walk<S: Simd, B: Batch>(simd: S, tree: &Tree, queries: &Queries<'_>, batc
 /// The rays' numbers by the signs of their directions, in ascending order for each, and where each octant ends.
 fn by_octant(queries: &Queries<'_>) -> (Vec<u32>, [usize; 8]) {
     let octant = |ray: &Ray| {
-        let negative = |axis: usize| usize::from(ray.direction[axis].is_sign_negative());
+        let negative = |axis: usize| u8::from(ray.direction[axis].is_sign_negative());
         (negative(0) | negative(1) << 1 | negative(2) << 2) & 7
     };
+    let octants: Vec<u8> = queries.rays.iter().map(octant).collect();
     let mut next = [0; 8];
-    for ray in queries.rays {
-        next[octant(ray)] += 1;
+    for octant in &octants {
+        next[usize::from(*octant)] += 1;
     }
     let mut start = 0;
     for count in &mut next {
         (*count, start) = (start, start + *count);
     }
     let mut order = vec![0; queries.len()];
-    for (i, ray) in queries.rays.iter().enumerate() {
-        let place = &mut next[octant(ray)];
+    for (i, octant) in octants.iter().enumerate() {
+        let place = &mut next[usize::from(*octant)];
         order[*place] = i as u32;
         *place += 1;
     }
@@ -114,7 +115,7 @@ fn descend<S: Simd, B: Batch>(
     packet: &mut Packet,
     batch: &mut B,
 ) -> u64 {
-    let beam = Beam::around(packet);
+    let beam = Beam::around(simd, packet);
     let (rays, mut bound) = packet.alive(simd);
     let mut tests = packet.count() as u64;
     let stack = &mut stacks.together[..];

@@ -15,6 +15,8 @@ use crate::query::ShadowBuffers;
 use crate::query::Tests;
 use crate::query::UNBLOCKED;
 use crate::shade::ShadePoint;
+use crate::ways::Places;
+use crate::ways::Ways;
 use crate::world::World;
 use dotray_accel::Queries;
 use dotray_geometry::Ray;
@@ -30,6 +32,20 @@ pub(super) struct ShadowStream {
     waiting: Vec<(usize, Vec3)>,
     filters: Vec<Vec3>,
     buffers: ShadowBuffers,
+    places: Places,
+    ways: Ways,
+}
+
+impl ShadowStream {
+    /// Asks what lies between a point and the lamp, unless the lamp adds nothing.
+    #[inline]
+    fn ask(&mut self, index: usize, from: Vec3, incident: &Incident, eps: f64, lit: Vec3) {
+        if lit != Vec3::ZERO {
+            self.rays.push(Ray::new(from, incident.towards));
+            self.ends.push(incident.distance - eps);
+            self.waiting.push((index, lit));
+        }
+    }
 }
 
 /// One point of a light that stands for it.
@@ -46,6 +62,7 @@ struct LightSample<'a> {
 impl Tracer<'_> {
     /// Adds every light's term to every point, light after light.
     pub(super) fn add_lights(&mut self, met: &[Met<'_>], colors: &mut [Vec3]) {
+        self.shadows.places.fill(met.iter().map(|Met { point, .. }| (point.point, point.normal)));
         for (number, (light, tint)) in (0..).zip(self.world.lights.iter().zip(&self.world.tints)) {
             let samples = light.samples(self.options.light_samples);
             let first = LightSample { light, tint, number, sample: 0, samples };
@@ -72,18 +89,31 @@ impl Tracer<'_> {
         shadows.rays.clear();
         shadows.ends.clear();
         shadows.waiting.clear();
-        for Met { index, point } in met {
-            let incident = from.light.incident(point.point, from.sample, from.samples);
-            if let Some(inspector) = &mut self.inspector {
-                inspector.light(light_term(point, from, incident.as_ref()));
+        let eps = self.world.ray_eps;
+        match from.light.source() {
+            Some(source) if self.inspector.is_none() => {
+                let mut ways = std::mem::take(&mut shadows.ways);
+                ways.find(self.level, &source, &shadows.places);
+                for (place, way, cosine) in ways.facing() {
+                    let Met { index, point } = &met[place];
+                    if let Some(incident) = from.light.along(way) {
+                        let lit = point.lit_by(&incident, cosine, from.tint);
+                        shadows.ask(*index, point.point, &incident, eps, lit);
+                    }
+                }
+                shadows.ways = ways;
             }
-            let Some(incident) = incident else { continue };
-            let lit = point.lit(&incident, from.tint);
-            // Where the lamp adds nothing, nobody asks what lies between.
-            if lit != Vec3::ZERO {
-                shadows.rays.push(Ray::new(point.point, incident.towards));
-                shadows.ends.push(incident.distance - self.world.ray_eps);
-                shadows.waiting.push((*index, lit));
+            Some(_) | None => {
+                for Met { index, point } in met {
+                    let incident = from.light.incident(point.point, from.sample, from.samples);
+                    if let Some(inspector) = &mut self.inspector {
+                        inspector.light(light_term(point, from, incident.as_ref()));
+                    }
+                    if let Some(incident) = incident {
+                        let lit = point.lit(&incident, from.tint);
+                        shadows.ask(*index, point.point, &incident, eps, lit);
+                    }
+                }
             }
         }
         self.find_filters();
@@ -99,7 +129,7 @@ impl Tracer<'_> {
     fn find_filters(&mut self) {
         let world = self.world;
         let together = self.together();
-        let ShadowStream { rays, ends, waiting, filters, buffers } = &mut self.shadows;
+        let ShadowStream { rays, ends, waiting, filters, buffers, .. } = &mut self.shadows;
         filters.clear();
         filters.resize(rays.len(), Vec3::ONE);
         let all_opaque = match self.options.shadows {
