@@ -35,6 +35,8 @@ mod cull;
 
 mod form;
 
+mod leaving;
+
 mod bake;
 
 pub mod shapes;

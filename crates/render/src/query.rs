@@ -45,6 +45,7 @@ pub struct NearestBuffers {
 pub struct NearestBatch<'a> {
     shapes: &'a Shapes,
     queries: Queries<'a>,
+    left: &'a [u32],
     buffers: &'a mut NearestBuffers,
 }
 
@@ -53,6 +54,12 @@ fn prepare(shapes: &Shapes, rays: &[Ray], prepared: &mut Vec<TriangleRay>) {
     let needed = if shapes.has_triangles() { usize::MAX } else { 1 };
     prepared.clear();
     prepared.extend(rays.iter().take(needed).map(TriangleRay::new));
+}
+
+/// Whether ray `i` has just left this shape for good.
+#[inline(always)]
+fn leaves(left: &[u32], i: usize, position: u32) -> bool {
+    left.get(i) == Some(&position)
 }
 
 /// Fills a list anew.
@@ -67,12 +74,20 @@ impl<'a> NearestBatch<'a> {
         prepare(shapes, queries.rays, &mut buffers.triangle_rays);
         refill(&mut buffers.found, queries.len(), None);
         refill(&mut buffers.tests, queries.len(), Tests::default());
-        Self { shapes, queries, buffers }
+        Self { shapes, queries, left: &[], buffers }
+    }
+
+    /// The same, for rays that each leave a shape which they cannot meet again ([`crate::leaving`]).
+    pub fn leaving(self, left: &'a [u32]) -> Self {
+        Self { left, ..self }
     }
 
     /// Tests one shape; answers with the new upper bound of t.
     #[inline(never)]
     fn test(&mut self, i: usize, position: u32, t_max: f64) -> f64 {
+        if leaves(self.left, i, position) {
+            return t_max;
+        }
         let buffers = &mut *self.buffers;
         buffers.tests[i].shapes += 1;
         let triangle_ray = &buffers.triangle_rays[if buffers.triangle_rays.len() == 1 { 0 } else { i }];
@@ -203,6 +218,7 @@ pub struct ShadowBuffers {
 pub struct ShadowBatch<'a> {
     shapes: &'a Shapes,
     queries: Queries<'a>,
+    left: &'a [u32],
     see_through: &'a dyn Fn(u32) -> bool,
     buffers: &'a mut ShadowBuffers,
 }
@@ -219,7 +235,12 @@ impl<'a> ShadowBatch<'a> {
         refill(&mut buffers.blockers, queries.len(), UNBLOCKED);
         buffers.crossings.clear();
         refill(&mut buffers.tests, queries.len(), Tests::default());
-        Self { shapes, queries, see_through, buffers }
+        Self { shapes, queries, left: &[], see_through, buffers }
+    }
+
+    /// The same, for rays that each leave a shape which they cannot meet again ([`crate::leaving`]).
+    pub fn leaving(self, left: &'a [u32]) -> Self {
+        Self { left, ..self }
     }
 
     /// Brings the crossings into an order that does not depend on the accelerator, each once: octree and BSP show
@@ -236,6 +257,9 @@ impl<'a> ShadowBatch<'a> {
     /// Tests one shape; answers whether it blocks the ray.
     #[inline(never)]
     fn blocks(&mut self, i: usize, position: u32) -> bool {
+        if leaves(self.left, i, position) {
+            return false;
+        }
         let buffers = &mut *self.buffers;
         buffers.tests[i].shapes += 1;
         let query = self.queries.query(i);

@@ -7,6 +7,7 @@
 //!       + kTrans·M_S·Trace(P, t̂)
 //! ```
 
+use crate::leaving::Leaving;
 use crate::light::Incident;
 use crate::light::MOST;
 use crate::options::TextureFilter;
@@ -45,6 +46,8 @@ pub struct ShadePoint<'a> {
     pub texture_on_all: Vec3,
     /// r̂: the mirrored direction.
     pub mirrored: Vec3,
+    /// Which rays that start here do not meet the shape again.
+    leaving: Leaving,
 }
 
 /// [`log2_above`] is less than 0.11 above the logarithm: a summand 2^-55.2 times the other at most is lost.
@@ -116,7 +119,15 @@ impl<'a> ShadePoint<'a> {
             texture,
             texture_on_all: if material.texture_on_all_light { texture } else { Vec3::ONE },
             mirrored: direction - normal * (2.0 * direction.dot(normal)),
+            leaving: world.caster.shapes.leaving(nearest.position),
         }
+    }
+
+    /// The position of the shape if a ray from here in this direction cannot meet it again.
+    #[inline]
+    pub fn left_by(&self, direction: Vec3) -> u32 {
+        let outward = if self.entering { self.geometric_normal } else { -self.geometric_normal };
+        self.leaving.left_by(direction, outward)
     }
 
     /// M_E + M_A·L_G·T_C

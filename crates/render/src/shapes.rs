@@ -9,6 +9,7 @@ use crate::bake::RunIndex;
 use crate::cull::Culls;
 use crate::estimate::written;
 use crate::form::Form;
+use crate::leaving::Leaving;
 use dotray_accel::Accelerator;
 use dotray_accel::narrow::Frame;
 use dotray_geometry::Crossings;
@@ -188,6 +189,19 @@ impl Shapes {
             | Form::FramedCylinder
             | Form::FramedCone
             | Form::FramedOther) => self.framed_crossings(form, index, position, ray),
+        }
+    }
+
+    /// Which rays that start on the shape cannot meet it again.
+    pub(crate) fn leaving(&self, position: u32) -> Leaving {
+        let (form, index) = self.baked.slot(position);
+        match form {
+            Form::Sphere | Form::Cuboid | Form::Cylinder => Leaving::solid(position),
+            Form::Triangle => Leaving::triangle(position, &self.baked.triangles[index]),
+            Form::FramedSphere | Form::FramedCuboid | Form::FramedCylinder => {
+                Leaving::framed_solid(position, self.frame(position))
+            }
+            Form::Cone | Form::FramedCone | Form::FramedOther => Leaving::NOTHING,
         }
     }
 

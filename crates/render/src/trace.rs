@@ -59,6 +59,8 @@ pub struct Tracer<'a> {
 #[derive(Default)]
 struct Stream<'a> {
     rays: Vec<Ray>,
+    /// The shape that each leaves and cannot meet again; empty for eye rays.
+    left: Vec<u32>,
     /// The product of the weights along the path of each.
     contributions: Vec<Vec3>,
     /// Which ray of the stream above sent each, and what its colour is multiplied by there; empty for eye rays.
@@ -209,6 +211,7 @@ impl<'a> Tracer<'a> {
     fn take_stream(&mut self) -> Stream<'a> {
         let mut stream = self.streams.pop().unwrap_or_default();
         stream.rays.clear();
+        stream.left.clear();
         stream.contributions.clear();
         stream.senders.clear();
         stream.met.clear();
@@ -248,7 +251,7 @@ impl<'a> Tracer<'a> {
         let t_min = [world.ray_eps];
         let queries = Queries { rays: &stream.rays, t_min: &t_min, t_max: ENDLESS };
         let shapes = &world.caster.shapes;
-        let mut batch = NearestBatch::new(shapes, queries, &mut self.nearest);
+        let mut batch = NearestBatch::new(shapes, queries, &mut self.nearest).leaving(&stream.left);
         world.caster.accelerator.walk_rays(self.level, &queries, &mut batch, together);
         count(&mut self.stats, &self.nearest.tests);
         let filter = self.options.texture_filter;
@@ -307,6 +310,7 @@ impl<'a> Tracer<'a> {
                 inspector.begin(kind.kind(), ray, depth, contribution, weight);
             }
             next.rays.push(ray);
+            next.left.push(point.left_by(ray.direction));
             next.contributions.push(contribution);
             next.senders.push((*index, weight));
         }

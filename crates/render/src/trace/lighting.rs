@@ -27,6 +27,8 @@ use dotray_scene::model::Tint;
 #[derive(Default)]
 pub(super) struct ShadowStream {
     rays: Vec<Ray>,
+    /// The shape that each leaves and cannot meet again.
+    left: Vec<u32>,
     ends: Vec<f64>,
     /// Whose each is: the place in the stream, and what the lamp gives where nothing lies between.
     waiting: Vec<(usize, Vec3)>,
@@ -39,9 +41,10 @@ pub(super) struct ShadowStream {
 impl ShadowStream {
     /// Asks what lies between a point and the lamp, unless the lamp adds nothing.
     #[inline]
-    fn ask(&mut self, index: usize, from: Vec3, incident: &Incident, eps: f64, lit: Vec3) {
+    fn ask(&mut self, index: usize, from: &ShadePoint<'_>, incident: &Incident, eps: f64, lit: Vec3) {
         if lit != Vec3::ZERO {
-            self.rays.push(Ray::new(from, incident.towards));
+            self.rays.push(Ray::new(from.point, incident.towards));
+            self.left.push(from.left_by(incident.towards));
             self.ends.push(incident.distance - eps);
             self.waiting.push((index, lit));
         }
@@ -87,6 +90,7 @@ impl Tracer<'_> {
         }
         let shadows = &mut self.shadows;
         shadows.rays.clear();
+        shadows.left.clear();
         shadows.ends.clear();
         shadows.waiting.clear();
         let eps = self.world.ray_eps;
@@ -98,7 +102,7 @@ impl Tracer<'_> {
                     let Met { index, point } = &met[place];
                     if let Some(incident) = from.light.along(way) {
                         let lit = point.lit_by(&incident, cosine, from.tint);
-                        shadows.ask(*index, point.point, &incident, eps, lit);
+                        shadows.ask(*index, point, &incident, eps, lit);
                     }
                 }
                 shadows.ways = ways;
@@ -111,7 +115,7 @@ impl Tracer<'_> {
                     }
                     if let Some(incident) = incident {
                         let lit = point.lit(&incident, from.tint);
-                        shadows.ask(*index, point.point, &incident, eps, lit);
+                        shadows.ask(*index, point, &incident, eps, lit);
                     }
                 }
             }
@@ -129,7 +133,7 @@ impl Tracer<'_> {
     fn find_filters(&mut self) {
         let world = self.world;
         let together = self.together();
-        let ShadowStream { rays, ends, waiting, filters, buffers, .. } = &mut self.shadows;
+        let ShadowStream { rays, left, ends, waiting, filters, buffers, .. } = &mut self.shadows;
         filters.clear();
         filters.resize(rays.len(), Vec3::ONE);
         let all_opaque = match self.options.shadows {
@@ -142,7 +146,7 @@ impl Tracer<'_> {
         let see_through = |material| !all_opaque && transmission(material) != Vec3::ZERO;
         let t_min = [world.ray_eps];
         let queries = Queries { rays, t_min: &t_min, t_max: ends };
-        let mut batch = ShadowBatch::new(&world.caster.shapes, queries, &see_through, buffers);
+        let mut batch = ShadowBatch::new(&world.caster.shapes, queries, &see_through, buffers).leaving(left);
         world.caster.accelerator.walk_rays(self.level, &queries, &mut batch, together);
         batch.finish();
         count(&mut self.stats, &buffers.tests);
