@@ -49,7 +49,8 @@ pub struct NearestBatch<'a> {
     buffers: &'a mut NearestBuffers,
 }
 
-/// Prepares each ray where there are triangles, else one that nobody looks at.
+/// Prepares each ray where there are triangles, else one that nobody looks at. (Tried and dropped: preparing it where a
+/// triangle is tested. Meshes took 7 to 12 % longer.)
 fn prepare(shapes: &Shapes, rays: &[Ray], prepared: &mut Vec<TriangleRay>) {
     let needed = if shapes.has_triangles() { usize::MAX } else { 1 };
     prepared.clear();
@@ -215,6 +216,8 @@ pub struct ShadowBuffers {
 }
 
 /// The occlusion of many shadow rays.
+///
+/// Tried and dropped: showing each packet first the leaf that blocked a ray last. Pictures took from 3 % less to 5 % more.
 pub struct ShadowBatch<'a> {
     shapes: &'a Shapes,
     queries: Queries<'a>,

@@ -255,6 +255,7 @@ impl<'a> Tracer<'a> {
         world.caster.accelerator.walk_rays(self.level, &queries, &mut batch, together);
         count(&mut self.stats, &self.nearest.tests);
         let filter = self.options.texture_filter;
+        stream.met.reserve(stream.rays.len());
         for (index, found) in self.nearest.found.iter().enumerate() {
             if let Some(nearest) = found {
                 let ray = &stream.rays[index];
