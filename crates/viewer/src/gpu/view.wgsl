@@ -326,7 +326,7 @@ fn solid_vertex(
     var high = vec2<f32>(-1.0);
     var behind = 0;
     for (var i = 0u; i < 8u; i++) {
-        let u = vec4<f32>(vec3<f32>(f32(i & 1u), f32(i >> 1u & 1u), f32(i >> 2u)) * 2.0 - 1.0, 1.0);
+        let u = vec4<f32>(vec3<f32>(f32(i & 1u), f32((i >> 1u) & 1u), f32(i >> 2u)) * 2.0 - 1.0, 1.0);
         let c = in_camera(vec3<f32>(dot(x, u), dot(y, u), dot(z, u)));
         if (c.z < view.ahead.w) {
             behind += 1;
