@@ -6,8 +6,10 @@ use crate::document::messages;
 use crate::engine::Command;
 use crate::engine::Engine;
 use crate::engine::Reply;
+use crate::engine::Share;
 use crate::wire::Ask;
 use crate::wire::Sent;
+use crate::wire::SentPart;
 use crate::wire::Tell;
 use dotray_accel::Kind;
 use dotray_render::PrepareOptions;
@@ -67,6 +69,11 @@ impl Clerk {
                 self.held = None;
                 Command::Stop
             }
+            Ask::Hide(hidden) => {
+                self.held = None;
+                Command::Hide(hidden)
+            }
+            Ask::Help(share) => Command::Help(share),
             Ask::Look(request, x, y) => Command::Look(request, x, y),
             Ask::Inspect(request, x, y) => Command::Inspect(request, x, y),
             Ask::Shown => {
@@ -87,14 +94,32 @@ impl Clerk {
         self.tell(reply)
     }
 
+    /// Who is asked every now and then whether to stop, where no other thread can interrupt.
+    pub fn ask_whether_to_stop(&mut self, ask: fn() -> bool) {
+        self.engine.ask_whether_to_stop(ask);
+    }
+
+    /// So many tiles for another tracer of the same scene; `None` where nothing is left to give away.
+    pub fn lend(&mut self, count: usize) -> Option<Share> {
+        self.engine.lend(count)
+    }
+
+    /// Takes tiles that another has traced.
+    pub fn accept(&mut self, part: SentPart) -> Option<Tell> {
+        let reply = self.engine.accept(&part.part())?;
+        self.tell(reply)
+    }
+
     fn open(&mut self, number: u64, path: &Path, accel: &str, files: &dyn Files) -> Tell {
         let accel = Kind::ALL.into_iter().find(|kind| kind.name() == accel).unwrap_or_default();
         let start = Instant::now();
-        match prepared(path, files, &PrepareOptions { accel, ..PrepareOptions::default() }) {
-            Ok((world, style)) => {
-                self.style = Some(Box::new(style));
+        let options = PrepareOptions { accel, ..PrepareOptions::default() };
+        match prepared(path, files, &options) {
+            Ok((world, whole)) => {
+                self.style = Some(Box::new(without_shapes(&whole)));
                 self.held = None;
                 self.engine.handle(Command::World(Some(Box::new(world))));
+                self.engine.handle(Command::Whole(Box::new(whole), options));
                 Tell::Prepared(number, start.elapsed().as_secs_f64())
             }
             Err(messages) => Tell::Failed(number, messages.into_iter().map(|message| message.text).collect()),
@@ -115,6 +140,7 @@ impl Clerk {
             Reply::Seen(seen) => return Some(Tell::Seen(seen)),
             Reply::Rays(rows) => return Some(Tell::Rays(Arc::unwrap_or_clone(rows))),
             Reply::Refused(sentence) => return Some(Tell::Refused(sentence)),
+            Reply::Part(part) => return Some(Tell::Part(Box::new(SentPart::of(&part)))),
         };
         if std::mem::replace(&mut self.awaited, true) {
             self.held = Some(tell);
@@ -124,7 +150,7 @@ impl Clerk {
     }
 }
 
-/// The scene for the tracer, and what can be edited of it.
+/// The scene for the tracer, and all that it was built of.
 fn prepared(
     path: &Path,
     files: &dyn Files,
@@ -137,13 +163,13 @@ fn prepared(
         outcome.resolved
     });
     let Some(resolved) = resolved else { return Err(messages(&diagnostics, &sources)) };
-    let style = without_shapes(&resolved);
+    let whole = resolved.clone();
     let textures = Textures::load(&resolved, files, options).map_err(|faults| messages(&faults, &sources))?;
     drop(sources);
     let world = World::build(resolved, textures, options);
     // What is said of a whole scene has no place.
     let world = world.map_err(|faults| messages(&faults, &Sources::default()))?;
-    Ok((world, style))
+    Ok((world, whole))
 }
 
 fn without_shapes(resolved: &Resolved) -> Resolved {

@@ -128,6 +128,7 @@ pub fn draft(packed: &Packed) -> Option<Packed> {
     let step = small.count.div_ceil(MOST);
     Some(Packed {
         frame: packed.frame,
+        frames: packed.frames.clone(),
         bounds: packed.bounds,
         balls: sketch(&packed.balls, step, small.layers),
         rounds: sketch(&packed.rounds, step, small.layers),
@@ -147,8 +148,8 @@ mod tests {
         let numbers = (0..balls.len() as u32).collect();
         let frame = ViewFrame { center: Vec3::ZERO, unit: 1.0 };
         let balls = vec![Batch { things: balls, numbers }];
-        let (rounds, boxes, triangles) = Default::default();
-        Packed { frame, bounds: Aabb::EMPTY, balls, rounds, boxes, triangles }
+        let (rounds, boxes, triangles, frames) = Default::default();
+        Packed { frame, bounds: Aabb::EMPTY, balls, rounds, boxes, triangles, frames }
     }
 
     #[test]

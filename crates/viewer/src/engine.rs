@@ -3,6 +3,14 @@
 //!
 //! It is a state machine without threads of its own: a window lets it run on a thread, a page in slices of time.
 
+mod interrupt;
+
+mod job;
+
+mod errand;
+
+use crate::hidden::Hidden;
+use crate::hidden::without;
 use crate::rays::RayRow;
 use crate::rays::rows;
 use dotray_accel::Queries;
@@ -10,30 +18,23 @@ use dotray_accel::simd::level;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
 use dotray_image::Image;
-use dotray_render::Antialias;
-use dotray_render::Crop;
-use dotray_render::Film;
-use dotray_render::Observer;
 use dotray_render::Options;
-use dotray_render::Parts;
 use dotray_render::Picture;
-use dotray_render::RenderError;
-use dotray_render::Tile;
+use dotray_render::PrepareOptions;
 use dotray_render::TilePixels;
 use dotray_render::World;
 use dotray_render::camera::Camera;
-use dotray_render::tiles::COARSE_STEPS;
 use dotray_render::trace::Tracer;
 use dotray_scene::Resolved;
 use dotray_scene::model;
-use rayon::prelude::*;
+use errand::Errand;
+use interrupt::Interrupt;
+use job::Job;
+pub use job::PORTION;
 use serde::Deserialize;
 use serde::Serialize;
-use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::sync::atomic::AtomicUsize;
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 use web_time::Instant;
 
@@ -53,8 +54,12 @@ pub struct Request {
 pub enum Command {
     /// Another scene; the picture under way is dropped.
     World(Option<Box<World>>),
+    /// All that the world was built of, and how: without it no shape can be left out.
+    Whole(Box<Resolved>, PrepareOptions),
     /// Other lights, materials and background of the same scene.
     Style(Box<Resolved>),
+    /// These shapes are not traced; those that were left out before are again. The picture under way is dropped.
+    Hide(Hidden),
     /// Traces a picture; the one under way is dropped.
     Draw(Box<Request>),
     /// Drops the picture under way.
@@ -63,6 +68,32 @@ pub enum Command {
     Look(Box<Request>, f64, f64),
     /// All rays of a place of the picture.
     Inspect(Box<Request>, f64, f64),
+    /// Traces tiles of a picture that is put together elsewhere.
+    Help(Box<Share>),
+}
+
+/// Tiles of a picture for another tracer of the same world.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Share {
+    /// The picture's request.
+    pub request: Request,
+    /// How many of the coarse looks were done.
+    pub looks: usize,
+    /// The numbers of the tiles.
+    pub tiles: Vec<u32>,
+}
+
+/// Tiles that another tracer has traced.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Of which request.
+    pub serial: u64,
+    /// How many of the coarse looks were done.
+    pub looks: usize,
+    /// The tiles.
+    pub tiles: Vec<TilePixels>,
+    /// Whether these are the last ones of their share.
+    pub ended: bool,
 }
 
 /// What the engine tells.
@@ -89,6 +120,8 @@ pub enum Reply {
     Rays(Arc<Vec<RayRow>>),
     /// The request makes no sense; the sentence says why.
     Refused(String),
+    /// Tiles of a picture that is put together elsewhere.
+    Part(Box<Part>),
 }
 
 /// What lies under a place of the picture.
@@ -104,55 +137,41 @@ pub struct Seen {
     pub distance: f64,
 }
 
-/// For how long a portion of work begins new tiles.
-pub const PORTION: Duration = Duration::from_millis(30);
-
 /// How often a picture under way is shown.
 const SHOWN_EVERY: Duration = Duration::from_millis(40);
 
-/// The edge of a tile: small, so that a portion that nobody can interrupt ends soon after its time.
-const TILE: u32 = 16;
-
-/// The edge of a tile whose pixels have many samples each.
-const OVERSAMPLED_TILE: u32 = 8;
-
-/// A picture under way.
+/// The shapes of the world, hidden ones and all.
 #[derive(Debug)]
-struct Job {
-    request: Request,
-    /// Taken out while a portion is traced.
-    parts: Option<Parts>,
-    film: Film,
-    /// How many of the coarse looks are done.
-    looks: usize,
-    /// What this look, or the picture itself, still lacks, in order.
-    left: Vec<Tile>,
-    shown: Vec<u8>,
-    began: Instant,
-    last_shown: Option<Instant>,
-}
-
-/// Stops the tracer in the midst of a tile.
-struct Interrupt<'a>(&'a AtomicBool);
-
-impl Observer for Interrupt<'_> {
-    fn cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
+struct Whole {
+    resolved: Box<Resolved>,
+    prepare: PrepareOptions,
 }
 
 /// See the module.
 #[derive(Debug, Default)]
 pub struct Engine {
     world: Option<Box<World>>,
+    whole: Option<Whole>,
+    /// The lights, materials and background that came last.
+    style: Option<Box<Resolved>>,
+    /// What is not to be traced, and what the world was built without.
+    hidden: Hidden,
+    left_out: Hidden,
     job: Option<Box<Job>>,
+    errand: Option<Box<Errand>>,
     interrupt: Arc<AtomicBool>,
+    ask: Option<fn() -> bool>,
 }
 
 impl Engine {
     /// Whether there is more to trace.
     pub fn is_busy(&self) -> bool {
-        self.job.is_some()
+        self.job.is_some() || self.errand.is_some()
+    }
+
+    /// Who is asked every now and then whether to stop, where no other thread can [interrupt](Engine::interrupt).
+    pub fn ask_whether_to_stop(&mut self, ask: fn() -> bool) {
+        self.ask = Some(ask);
     }
 
     /// As long as this is set, tracing stops between two bounces of a ray; a tile that was not finished comes again.
@@ -164,28 +183,64 @@ impl Engine {
     pub fn handle(&mut self, command: Command) -> Vec<Reply> {
         match command {
             Command::World(world) => {
-                (self.world, self.job) = (world, None);
+                self.drop_work();
+                (self.world, self.whole, self.style) = (world, None, None);
+                (self.hidden, self.left_out) = Default::default();
+                Vec::new()
+            }
+            Command::Whole(resolved, prepare) => {
+                self.whole = Some(Whole { resolved, prepare });
                 Vec::new()
             }
             Command::Style(resolved) => {
-                self.job = None;
+                self.drop_work();
                 if let Some(world) = &mut self.world {
                     world.restyle(&resolved);
                 }
+                self.style = Some(resolved);
+                Vec::new()
+            }
+            Command::Hide(hidden) => {
+                self.drop_work();
+                self.hidden = hidden;
                 Vec::new()
             }
             Command::Draw(request) => self.draw(*request).into_iter().collect(),
             Command::Stop => {
-                self.job = None;
+                self.drop_work();
                 Vec::new()
             }
             Command::Look(request, x, y) => vec![Reply::Seen(self.look(&request, x, y))],
             Command::Inspect(request, x, y) => self.inspect(&request, x, y).into_iter().collect(),
+            Command::Help(share) => {
+                self.help(*share);
+                Vec::new()
+            }
         }
     }
 
+    fn drop_work(&mut self) {
+        (self.job, self.errand) = (None, None);
+    }
+
+    /// Builds the world without what is hidden, once somebody wants to see it: many may be hidden one by one.
+    fn leave_out(&mut self) {
+        if self.left_out == self.hidden {
+            return;
+        }
+        let Some((whole, world)) = self.whole.as_ref().zip(self.world.take()) else { return };
+        let shown = without(&whole.resolved, &self.hidden);
+        // Fewer shapes than before are never too many.
+        self.world = world.moved(shown, &whole.prepare, false).ok().map(Box::new);
+        if let Some((world, style)) = self.world.as_mut().zip(self.style.as_ref()) {
+            world.restyle(style);
+        }
+        self.left_out = self.hidden.clone();
+    }
+
     fn draw(&mut self, request: Request) -> Option<Reply> {
-        self.job = None;
+        self.drop_work();
+        self.leave_out();
         let world = self.world.as_deref_mut()?;
         world.set_camera(request.camera);
         match Job::new(world, request) {
@@ -197,10 +252,52 @@ impl Engine {
         }
     }
 
+    fn help(&mut self, share: Share) {
+        let Share { request, looks, tiles } = share;
+        if self.errand.as_ref().is_none_or(|errand| errand.request != request) {
+            self.leave_out();
+            let Some(world) = self.world.as_deref_mut() else { return };
+            world.set_camera(request.camera);
+            // Whoever shares a picture has seen that there can be one.
+            let Ok(picture) = Picture::new(world, &request.options) else { return };
+            let parts = picture.into_parts();
+            self.errand = Some(Box::new(Errand::new(request, parts)));
+        }
+        if let (Some(errand), Some(world)) = (&mut self.errand, self.world.as_deref()) {
+            errand.take(world, looks, &tiles);
+        }
+    }
+
+    /// So many tiles for another tracer of the same world; `None` where nothing is left to give away.
+    pub fn lend(&mut self, count: usize) -> Option<Share> {
+        self.job.as_deref_mut()?.lend(count)
+    }
+
+    /// Takes tiles that another has traced; answers where there is something new to show.
+    pub fn accept(&mut self, part: &Part) -> Option<Reply> {
+        let job = self.job.as_deref_mut()?;
+        let any = job.accept(part);
+        self.shown(any)
+    }
+
     /// Traces one portion; answers where there is something new to show.
     pub fn advance(&mut self) -> Option<Reply> {
-        let (world, job) = self.world.as_deref().zip(self.job.as_deref_mut())?;
-        let any = job.portion(world, &self.interrupt);
+        let interrupt = Interrupt::new(&self.interrupt, self.ask);
+        let world = self.world.as_deref()?;
+        if let Some(errand) = self.errand.as_deref_mut() {
+            let part = errand.portion(world, &interrupt);
+            if errand.is_done() {
+                self.errand = None;
+            }
+            return part.map(|part| Reply::Part(Box::new(part)));
+        }
+        let any = self.job.as_deref_mut()?.portion(world, &interrupt);
+        self.shown(any)
+    }
+
+    /// The picture under way, where it is time to show it.
+    fn shown(&mut self, any: bool) -> Option<Reply> {
+        let job = self.job.as_deref_mut()?;
         let now = Instant::now();
         let due = job.last_shown.is_none_or(|last| now.duration_since(last) >= SHOWN_EVERY);
         let complete = job.film.is_complete();
@@ -211,7 +308,8 @@ impl Engine {
         reply
     }
 
-    fn look(&self, request: &Request, x: f64, y: f64) -> Option<Seen> {
+    fn look(&mut self, request: &Request, x: f64, y: f64) -> Option<Seen> {
+        self.leave_out();
         let world = self.world.as_deref()?;
         let ray = camera_of(request).ray(x, y);
         let nearest = nearest(world, ray)?;
@@ -220,14 +318,23 @@ impl Engine {
         let options = Options { recursion: 0, ..request.options.clone() };
         let node = Tracer::new(world, &options, level()).inspect(ray)?;
         let material = node.meeting.map(|met| met.material)?;
-        Some(Seen { number: nearest.number, material, point: surface.point, distance: nearest.hit.t })
+        let number = self.left_out.number_of_shown(nearest.number);
+        Some(Seen { number, material, point: surface.point, distance: nearest.hit.t })
     }
 
-    fn inspect(&self, request: &Request, x: f64, y: f64) -> Option<Reply> {
+    fn inspect(&mut self, request: &Request, x: f64, y: f64) -> Option<Reply> {
+        self.leave_out();
         let world = self.world.as_deref()?;
         let root = Tracer::new(world, &request.options, level()).inspect(camera_of(request).ray(x, y))?;
         let size = world.bounds().size().length();
-        Some(Reply::Rays(Arc::new(rows(&root, if size > 0.0 { 2.0 * size } else { 1.0 }))))
+        let mut rows = rows(&root, if size > 0.0 { 2.0 * size } else { 1.0 });
+        for row in &mut rows {
+            row.met = row.met.map(|(number, material)| (self.left_out.number_of_shown(number), material));
+            for light in &mut row.lights {
+                light.blocker = light.blocker.map(|number| self.left_out.number_of_shown(number));
+            }
+        }
+        Some(Reply::Rays(Arc::new(rows)))
     }
 }
 
@@ -238,112 +345,4 @@ fn camera_of(request: &Request) -> Camera {
 fn nearest(world: &World, ray: Ray) -> Option<dotray_render::Nearest> {
     let queries = Queries { rays: &[ray], t_min: &[world.ray_eps()], t_max: dotray_accel::ENDLESS };
     world.caster().nearest(&queries, false).first().copied().flatten()
-}
-
-impl Job {
-    fn new(world: &World, mut request: Request) -> Result<Self, RenderError> {
-        let oversampled = request.options.antialias != Antialias::None;
-        request.options.tile_size = if oversampled { OVERSAMPLED_TILE } else { TILE };
-        request.options.transparent = false;
-        let picture = Picture::new(world, &request.options)?;
-        let film = picture.film()?;
-        let left = middle_first(picture.tiles(), request.options.window());
-        let shown = vec![0; film.image().width() * film.image().height() * 4];
-        let parts = Some(picture.into_parts());
-        Ok(Self { request, parts, film, looks: 0, left, shown, began: Instant::now(), last_shown: None })
-    }
-
-    /// Traces tiles for about [`PORTION`]; answers whether any was finished.
-    fn portion(&mut self, world: &World, interrupt: &AtomicBool) -> bool {
-        let Some(parts) = self.parts.take() else { return false };
-        let picture = Picture::of(world, &self.request.options, parts);
-        let step = COARSE_STEPS.get(self.looks).copied();
-        let traced = trace(&picture, &self.left, step, &Interrupt(interrupt));
-        self.parts = Some(picture.into_parts());
-        for pixels in &traced {
-            if step.is_some() {
-                self.film.show(pixels)
-            } else {
-                self.film.store(pixels)
-            };
-            show(&mut self.shown, self.request.options.window(), pixels);
-        }
-        let done: BTreeSet<u32> = traced.iter().map(|pixels| pixels.tile.number).collect();
-        self.left.retain(|tile| !done.contains(&tile.number));
-        if self.left.is_empty() {
-            self.looks += 1;
-            self.left = middle_first(self.film.missing(), self.request.options.window());
-        }
-        !traced.is_empty()
-    }
-
-    fn reply(&mut self, now: Instant) -> Reply {
-        self.last_shown = Some(now);
-        let complete = self.film.is_complete();
-        let progress = self.film.progress();
-        let part = progress.finished_pixels as f32 / progress.total_pixels.max(1) as f32;
-        let image = self.film.image();
-        Reply::Picture {
-            serial: self.request.serial,
-            size: [image.width(), image.height()],
-            pixels: Arc::new(self.shown.clone()),
-            done: if complete { 1.0 } else { part.min(0.999) },
-            seconds: now.duration_since(self.began).as_secs_f64(),
-            image: complete.then(|| Arc::new(image.clone())),
-        }
-    }
-}
-
-/// Computes tiles, or looks at them in squares of `step` pixels, for about [`PORTION`]; at least one, unless it is
-/// interrupted.
-fn trace(
-    picture: &Picture<'_>,
-    tiles: &[Tile],
-    step: Option<u32>,
-    interrupt: &Interrupt<'_>,
-) -> Vec<TilePixels> {
-    let start = Instant::now();
-    let next = AtomicUsize::new(0);
-    // Each thread takes the next tile, so that they come in order.
-    let work = |_| {
-        let mut traced = Vec::new();
-        while !interrupt.cancelled() && (traced.is_empty() || start.elapsed() < PORTION) {
-            let Some(tile) = tiles.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
-            traced.extend(match step {
-                Some(step) => picture.preview(tile, step, interrupt),
-                None => picture.tile(tile, interrupt),
-            });
-        }
-        traced
-    };
-    (0..rayon::current_num_threads().max(1)).into_par_iter().with_max_len(1).flat_map_iter(work).collect()
-}
-
-/// The tiles in the middle of the window before those at its edges: there people look.
-fn middle_first(tiles: impl AsRef<[Tile]>, window: Crop) -> Vec<Tile> {
-    let off =
-        |at: u32, edge: u32, first: u32, size: u32| i64::from(2 * (at - first) + edge) - i64::from(size);
-    let mut tiles = tiles.as_ref().to_vec();
-    tiles.sort_by_key(|tile| {
-        let across = off(tile.x, tile.width, window.x, window.width);
-        across.pow(2) + off(tile.y, tile.height, window.y, window.height).pow(2)
-    });
-    tiles
-}
-
-/// Shows a tile in the window's pixels: red, green, blue, alpha.
-fn show(shown: &mut [u8], window: Crop, pixels: &TilePixels) {
-    let tile = pixels.tile;
-    // In double precision, as files have it: where the product is rounded twice, a level may be off.
-    let level = |channel: &f32| (f64::from(*channel).clamp(0.0, 1.0) * 255.0).round() as u8;
-    for (row, samples) in pixels.samples.chunks_exact(3 * tile.width as usize).enumerate() {
-        let row = (tile.y - window.y) as usize + row;
-        let start = (row * window.width as usize + (tile.x - window.x) as usize) * 4;
-        let line = shown.get_mut(start..start + 4 * tile.width as usize).unwrap_or_default();
-        for (pixel, sample) in line.chunks_exact_mut(4).zip(samples.chunks_exact(3)) {
-            if let [r, g, b] = sample {
-                pixel.copy_from_slice(&[level(r), level(g), level(b), 255]);
-            }
-        }
-    }
 }

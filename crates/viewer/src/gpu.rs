@@ -4,6 +4,8 @@
 
 mod pipelines;
 
+mod sight;
+
 mod held;
 
 use crate::hidden::Hidden;
@@ -21,6 +23,7 @@ use egui_wgpu::RenderState;
 use held::HeldShapes;
 use held::vertex_buffer;
 use pipelines::Pipelines;
+use sight::Sight;
 use std::ops::Range;
 use web_time::Duration;
 use web_time::Instant;
@@ -33,6 +36,7 @@ struct Loaded {
     shapes: HeldShapes,
     draft: Option<HeldShapes>,
     pictures: wgpu::TextureView,
+    frames: wgpu::TextureView,
     bind_group: wgpu::BindGroup,
     light_count: u32,
     ambient: [f32; 3],
@@ -76,6 +80,7 @@ struct Uniforms {
     ahead: [f32; 4],
     ambient: [f32; 4],
     counts: [u32; 4],
+    permutation: [[u32; 4]; 16],
 }
 
 /// The near plane, in parts of the scene's size.
@@ -139,12 +144,14 @@ impl Raster {
     pub fn load(&mut self, packed: &Packed, draft: Option<&Packed>, pictures: &Pictures, style: &Resolved) {
         let device = &self.state.device;
         let pictures = self.picture_layers(pictures);
-        let bind_group = self.tables(&packed.frame, style, &pictures);
+        let frames = self.table(packed.frames.concat());
+        let bind_group = self.tables(&packed.frame, style, &pictures, &frames);
         self.loaded = Some(Loaded {
             frame: packed.frame,
             shapes: HeldShapes::new(device, packed),
             draft: draft.filter(|_| self.slow).map(|draft| HeldShapes::new(device, draft)),
             pictures,
+            frames,
             bind_group,
             light_count: style.lights.len() as u32,
             ambient: style.ambient.to_array().map(|x| x as f32),
@@ -156,7 +163,7 @@ impl Raster {
     /// Takes other lights, materials and colours.
     pub fn restyle(&mut self, style: &Resolved) {
         let Some(mut loaded) = self.loaded.take() else { return };
-        loaded.bind_group = self.tables(&loaded.frame, style, &loaded.pictures);
+        loaded.bind_group = self.tables(&loaded.frame, style, &loaded.pictures, &loaded.frames);
         loaded.light_count = style.lights.len() as u32;
         loaded.ambient = style.ambient.to_array().map(|x| x as f32);
         loaded.background = style.background;
@@ -194,8 +201,12 @@ impl Raster {
         let most = self.state.device.limits().max_texture_dimension_2d;
         let size = size.map(|edge| edge.clamp(1, most));
         fit(&self.state, &mut self.target, size);
-        let loaded = self.loaded.as_ref()?;
+        let loaded = self.loaded.as_mut()?;
         let uniforms = uniforms(loaded, camera, size);
+        let sight = Sight::new(uniforms.eye, uniforms.right, uniforms.up, uniforms.ahead);
+        loaded.shapes.look(&sight);
+        loaded.draft.iter_mut().for_each(|draft| draft.look(&sight));
+        let loaded = self.loaded.as_ref()?;
         self.state.queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(&uniforms));
         (self.drawn, self.last_portion) = (None, None);
         if lines_only {
@@ -211,6 +222,11 @@ impl Raster {
             self.paint(self.target.as_ref()?, Some((&loaded.shapes, all)), Some(loaded.clear()), true);
         }
         self.target.as_ref().map(|target| target.id)
+    }
+
+    /// How many of the scene's things were drawn last, or are to be: those far off the screen are not.
+    pub fn things_in_sight(&self) -> u64 {
+        self.loaded.as_ref().map_or(0, |loaded| loaded.shapes.count())
     }
 
     /// Whether what was drawn last is a draft.
@@ -315,7 +331,13 @@ impl Raster {
         Some((target.size, rows.copied().collect()))
     }
 
-    fn tables(&self, frame: &ViewFrame, style: &Resolved, pictures: &wgpu::TextureView) -> wgpu::BindGroup {
+    fn tables(
+        &self,
+        frame: &ViewFrame,
+        style: &Resolved,
+        pictures: &wgpu::TextureView,
+        frames: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
         let device = &self.state.device;
         let materials = self.table(tables::materials(&style.materials));
         let lights = self.table(tables::lights(&style.lights, &style.tints, frame));
@@ -329,6 +351,7 @@ impl Raster {
                 entry(2, wgpu::BindingResource::TextureView(&lights)),
                 entry(3, wgpu::BindingResource::TextureView(pictures)),
                 entry(4, wgpu::BindingResource::Sampler(&self.pipelines.sampler)),
+                entry(5, wgpu::BindingResource::TextureView(frames)),
             ],
         })
     }
@@ -427,5 +450,6 @@ fn uniforms(loaded: &Loaded, camera: &Camera, size: [u32; 2]) -> Uniforms {
         ahead: four(ahead, NEAR),
         ambient: [r, g, b, 0.0],
         counts: [loaded.light_count, tables::WIDTH as u32, 0, 0],
+        permutation: tables::permutation(),
     }
 }

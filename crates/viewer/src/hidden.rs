@@ -1,9 +1,15 @@
 //! Which shapes are not shown, as ranges of shape numbers: a million shapes of a group are one range.
 
+use dotray_scene::Resolved;
+use dotray_scene::resolved::Run;
+use dotray_scene::resolved::RunColors;
+use dotray_scene::resolved::TreeEvent;
+use serde::Deserialize;
+use serde::Serialize;
 use std::ops::Range;
 
 /// The shapes that are hidden.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Hidden {
     /// Apart from each other, in rising order, none empty.
     ranges: Vec<Range<u32>>,
@@ -70,6 +76,36 @@ impl Hidden {
         self.ranges.clear();
     }
 
+    /// The parts of a range of shapes that are shown, in rising order.
+    pub fn shown_of(&self, range: Range<u32>) -> Vec<Range<u32>> {
+        let mut shown = Vec::new();
+        let mut from = range.start;
+        let first = self.ranges.partition_point(|other| other.end <= range.start);
+        for other in self.ranges.iter().skip(first).take_while(|other| other.start < range.end) {
+            if other.start > from {
+                shown.push(from..other.start);
+            }
+            from = from.max(other.end);
+        }
+        if from < range.end {
+            shown.push(from..range.end);
+        }
+        shown
+    }
+
+    /// The number of the shape that is the `index`-th of those shown.
+    pub fn number_of_shown(&self, index: u32) -> u32 {
+        let before = |number: u32, range: &Range<u32>| (range.start <= number).then(|| range.len() as u32);
+        let mut number = index;
+        for range in &self.ranges {
+            match before(number, range) {
+                Some(skipped) => number = number.saturating_add(skipped),
+                None => break,
+            }
+        }
+        number
+    }
+
     /// Which entries of a list of shape numbers in rising order are shown: as few ranges as there can be. It costs as
     /// much as there are hidden ranges, not shapes.
     pub fn shown(&self, numbers: &[u32]) -> Vec<Range<u32>> {
@@ -88,6 +124,35 @@ impl Hidden {
         }
         shown
     }
+}
+
+/// The scene without its hidden shapes, as if they were not in its file: those that are left are numbered anew, in the
+/// same order.
+pub fn without(whole: &Resolved, hidden: &Hidden) -> Resolved {
+    let mut count = 0;
+    let (mut runs, mut parts) = (Vec::new(), Vec::with_capacity(whole.runs.len()));
+    for run in &whole.runs {
+        let first_part = runs.len() as u32;
+        for shapes in hidden.shown_of(run.first_shape..run.first_shape + run.count) {
+            let skipped = shapes.start - run.first_shape;
+            let colors = match run.colors {
+                RunColors::Shapes { list, first } => RunColors::Shapes { list, first: first + skipped },
+                RunColors::No | RunColors::Vertices => run.colors,
+            };
+            let (first, length) = (run.first + skipped, shapes.len() as u32);
+            runs.push(Run { first, count: length, first_shape: count, colors, ..*run });
+            count += length;
+        }
+        parts.push(first_part..runs.len() as u32);
+    }
+    let event = |event: &TreeEvent| match event {
+        TreeEvent::Open | TreeEvent::Close => vec![*event],
+        TreeEvent::Run(run) => {
+            parts.get(*run as usize).cloned().unwrap_or_default().map(TreeEvent::Run).collect()
+        }
+    };
+    let tree = whole.tree.iter().flat_map(event).collect();
+    Resolved { runs, tree, shape_count: count, ..whole.clone() }
 }
 
 #[cfg(test)]
@@ -121,6 +186,10 @@ mod tests {
             );
             let ordered = hidden.ranges().windows(2).all(|pair| pair[0].end < pair[1].start);
             assert!(ordered && hidden.ranges().iter().all(|range| !range.is_empty()), "{hidden:?}");
+            let left: Vec<u32> = hidden.shown_of(range.clone()).into_iter().flatten().collect();
+            assert!(left.iter().copied().eq(range.filter(|number| !flags[*number as usize])));
+            let shown = (0..count).filter(|number| !flags[*number as usize]);
+            assert!(shown.enumerate().all(|(at, number)| hidden.number_of_shown(at as u32) == number));
             // Each shape stands twice in the list, as a shape of two triangles would.
             let numbers: Vec<u32> = (0..2 * count).map(|entry| entry / 2).collect();
             let shown = hidden.shown(&numbers);

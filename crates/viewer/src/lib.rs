@@ -36,6 +36,8 @@ pub mod wire;
 
 pub mod clerk;
 
+pub mod crew;
+
 #[cfg(feature = "screen")]
 pub mod gpu;
 

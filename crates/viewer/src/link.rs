@@ -41,6 +41,8 @@ pub enum News {
     Failed(Vec<Message>),
     /// The tracer has the scene, after so many seconds.
     Prepared(f64),
+    /// So many threads trace it.
+    Tracers(usize),
     /// A scene that was sent from elsewhere, or has changed there.
     Sent(Source),
     /// Something that the user should know.
@@ -154,6 +156,11 @@ impl Link {
     pub fn open(&mut self, source: Source, prepare: PrepareOptions, first: bool) {
         let number = self.teller.last_asked.fetch_add(1, Ordering::Relaxed) + 1;
         self.desk.open(Asked { source, prepare, first, number });
+    }
+
+    /// How many threads trace, where that is known: another program does not tell.
+    pub fn threads(&self) -> Option<usize> {
+        self.desk.threads()
     }
 
     /// What has come since the last time; on a page this does a slice of the work.

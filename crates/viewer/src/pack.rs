@@ -14,7 +14,10 @@ use dotray_geometry::Vec2;
 use dotray_geometry::Vec3;
 use dotray_scene::Resolved;
 use dotray_scene::bounds::world_bounds;
+use dotray_scene::procedural::Procedural;
 use dotray_scene::resolved::Run;
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// A sphere that stays one in the world, without texture.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -38,6 +41,8 @@ pub struct Solid {
     pub unit: u32,
     /// The radii of what is round about y, below and above, the greater one 1.
     pub radii: [f32; 2],
+    /// The number of its frame.
+    pub frame: u32,
 }
 
 /// The unit shapes, each within -1 to 1 on all axes.
@@ -66,6 +71,8 @@ pub struct Corner {
     pub texcoord: [f32; 2],
     /// The number of its material.
     pub material: u32,
+    /// The number of its frame.
+    pub frame: u32,
 }
 
 /// Things of one kind that a GPU holds in one buffer.
@@ -92,6 +99,8 @@ pub struct Packed {
     pub boxes: Vec<Batch<Solid>>,
     /// Triangles.
     pub triangles: Vec<Batch<[Corner; 3]>>,
+    /// The rows of `object_from_view` of each frame, where a material has 3-D textures or bumps: else nothing.
+    pub frames: Vec<[[f32; 4]; 3]>,
 }
 
 /// Bytes of a batch: GPUs refuse buffers of any size.
@@ -109,13 +118,33 @@ fn put<T>(batches: &mut Vec<Batch<T>>, number: u32, thing: T) {
     }
 }
 
+/// Appends the batches of the shapes that follow.
+fn append<T>(batches: &mut Vec<Batch<T>>, more: Vec<Batch<T>>) {
+    for mut batch in more {
+        let fits =
+            |last: &&mut Batch<T>| (last.things.len() + batch.things.len()) * size_of::<T>() <= BATCH_BYTES;
+        match batches.last_mut().filter(fits) {
+            Some(last) => {
+                last.things.append(&mut batch.things);
+                last.numbers.append(&mut batch.numbers);
+            }
+            None => batches.push(batch),
+        }
+    }
+}
+
 /// A shape on its way.
 struct Placed<'a> {
     number: u32,
     material: u32,
     frame: &'a Transform,
+    frame_number: u32,
+    /// Whether its colour depends on where on it one looks.
     textured: bool,
 }
+
+/// How many shapes one thread lays down at a time.
+const PIECE: u32 = 1 << 14;
 
 impl Packed {
     /// Lays down the shapes of a scene.
@@ -125,26 +154,54 @@ impl Packed {
         let unit = if radius > 0.0 && radius.is_finite() { radius } else { 1.0 };
         let center = if bounds.is_empty() { Vec3::ZERO } else { bounds.center() };
         let frame = ViewFrame { center, unit };
-        let (balls, rounds, boxes, triangles) = Default::default();
-        let mut packed = Self { frame, bounds, balls, rounds, boxes, triangles };
-        for run in &resolved.runs {
-            packed.run(resolved, run);
+        let mut packed = Self::nothing(frame, bounds);
+        packed.frames = frames(resolved, &frame);
+        let starts: Vec<u32> = (0..resolved.shape_count).step_by(PIECE as usize).collect();
+        // A few pieces at a time, lest everything is there twice.
+        for starts in starts.chunks(4 * rayon::current_num_threads().max(1)) {
+            let piece = |start: &u32| {
+                let mut piece = Self::nothing(frame, bounds);
+                let shapes = *start..start.saturating_add(PIECE).min(resolved.shape_count);
+                let first = resolved.runs.partition_point(|run| run.first_shape + run.count <= shapes.start);
+                let runs = resolved.runs.iter().skip(first);
+                runs.take_while(|run| run.first_shape < shapes.end)
+                    .for_each(|run| piece.run(resolved, run, &shapes));
+                piece
+            };
+            let pieces: Vec<Self> = starts.par_iter().map(piece).collect();
+            pieces.into_iter().for_each(|piece| packed.append(piece));
         }
         packed
     }
 
-    fn run(&mut self, resolved: &Resolved, run: &Run) {
+    fn nothing(frame: ViewFrame, bounds: Aabb) -> Self {
+        let (balls, rounds, boxes, triangles, frames) = Default::default();
+        Self { frame, bounds, balls, rounds, boxes, triangles, frames }
+    }
+
+    fn append(&mut self, piece: Self) {
+        append(&mut self.balls, piece.balls);
+        append(&mut self.rounds, piece.rounds);
+        append(&mut self.boxes, piece.boxes);
+        append(&mut self.triangles, piece.triangles);
+    }
+
+    /// Lays down those shapes of a run that are among `shapes`.
+    fn run(&mut self, resolved: &Resolved, run: &Run, shapes: &Range<u32>) {
         let file = resolved.files.get(run.file.0 as usize);
         let frame = resolved.frames.get(run.frame as usize);
         let (Some(file), Some(frame)) = (file, frame) else { return };
         let written = file.shape_materials(run.kind);
-        for within in 0..run.count {
+        let end = (shapes.end - run.first_shape).min(run.count);
+        for within in shapes.start.saturating_sub(run.first_shape)..end {
             let entry = (run.first + within) as usize;
             let material = resolved.material_index(run, written.get(entry).copied().unwrap_or(-1));
-            let textured = resolved.materials.get(material as usize).is_some_and(|m| m.texture.is_some());
+            let textured = resolved.materials.get(material as usize).is_some_and(|m| {
+                m.texture.is_some() || !m.procedural.solids.is_empty() || !m.procedural.bumps.is_empty()
+            });
             if let Some(shape) = file.shape(run.kind, entry) {
                 let number = run.first_shape + within;
-                self.shape(&shape, &Placed { number, material, frame, textured });
+                self.shape(&shape, &Placed { number, material, frame, frame_number: run.frame, textured });
             }
         }
     }
@@ -194,7 +251,8 @@ impl Packed {
         let t = self.frame.point(world_from_unit.translation);
         let row = |at: usize, t: f64| m.row(at).extend(t).to_array().map(|x| x as f32);
         let rows = [row(0, t.x), row(1, t.y), row(2, t.z)];
-        let solid = Solid { rows, material: placed.material, unit: unit as u32, radii };
+        let solid =
+            Solid { rows, material: placed.material, unit: unit as u32, radii, frame: placed.frame_number };
         let list = if unit == Unit::Cuboid { &mut self.boxes } else { &mut self.rounds };
         put(list, placed.number, solid);
     }
@@ -220,6 +278,7 @@ impl Packed {
             normal: folded(placed.frame.world_normal(normal.normalize())),
             texcoord: texcoord.to_array().map(|x| x as f32),
             material: placed.material,
+            frame: placed.frame_number,
         }
     }
 
@@ -246,7 +305,7 @@ impl Packed {
     }
 
     /// The box around some shapes in the world; it looks at those shapes only.
-    pub fn bounds_of(&self, shapes: std::ops::Range<u32>) -> Aabb {
+    pub fn bounds_of(&self, shapes: Range<u32>) -> Aabb {
         let mut bounds = Aabb::EMPTY;
         let mut grow = |point: Vec3| bounds = bounds.grown(point * self.frame.unit + self.frame.center);
         for_each(&self.balls, &shapes, |ball| {
@@ -264,7 +323,52 @@ impl Packed {
     }
 }
 
-fn for_each<T>(batches: &[Batch<T>], shapes: &std::ops::Range<u32>, mut visit: impl FnMut(&T)) {
+/// The frames as the shader wants them; nothing where no material asks for places in object space.
+fn frames(resolved: &Resolved, view: &ViewFrame) -> Vec<[[f32; 4]; 3]> {
+    let is_carved = |procedural: &Procedural| !procedural.solids.is_empty() || !procedural.bumps.is_empty();
+    if !resolved.materials.iter().any(|material| is_carved(&material.procedural)) {
+        return Vec::new();
+    }
+    let rows = |frame: &Transform| {
+        let object_from_world = &frame.object_from_world;
+        let m = object_from_world.matrix3 * view.unit;
+        let t = object_from_world.transform_point3(view.center);
+        let row = |at: usize, t: f64| m.row(at).extend(t).to_array().map(|x| x as f32);
+        [row(0, t.x), row(1, t.y), row(2, t.z)]
+    };
+    resolved.frames.iter().map(rows).collect()
+}
+
+/// What stands somewhere in the view's frame.
+pub trait Bounded {
+    /// The corners of a box around it, the lower and the upper one.
+    fn corners(&self) -> [glam::Vec3; 2];
+}
+
+impl Bounded for Ball {
+    fn corners(&self) -> [glam::Vec3; 2] {
+        let [x, y, z, r] = self.place;
+        let center = glam::Vec3::new(x, y, z);
+        [center - r, center + r]
+    }
+}
+
+impl Bounded for Solid {
+    fn corners(&self) -> [glam::Vec3; 2] {
+        let center = glam::Vec3::from_array(self.rows.map(|row| row[3]));
+        let reach = glam::Vec3::from_array(self.rows.map(|[x, y, z, _]| x.abs() + y.abs() + z.abs()));
+        [center - reach, center + reach]
+    }
+}
+
+impl Bounded for [Corner; 3] {
+    fn corners(&self) -> [glam::Vec3; 2] {
+        let [a, b, c] = self.map(|corner| glam::Vec3::from_array(corner.point));
+        [a.min(b).min(c), a.max(b).max(c)]
+    }
+}
+
+fn for_each<T>(batches: &[Batch<T>], shapes: &Range<u32>, mut visit: impl FnMut(&T)) {
     for batch in batches {
         let first = batch.numbers.partition_point(|&number| number < shapes.start);
         let end = batch.numbers.partition_point(|&number| number < shapes.end).max(first);
@@ -312,6 +416,27 @@ mod tests {
         let z = 1.0 - x.abs() - y.abs();
         let fold = (-z).max(0.0);
         Vec3::new(x - x.signum() * fold, y - y.signum() * fold, z).normalize()
+    }
+
+    #[test]
+    fn pieces_come_together_in_their_order() {
+        // More shapes than a piece has, in runs of odd lengths.
+        let mut text = String::new();
+        for k in 0..40_000_u32 {
+            text += &match k % 7 {
+                0 => format!("#shape_box -1 {k} 0 0 1 1 1\n"),
+                1 | 2 => format!("#shape_cone -1 {k} 0 0 1 1\n"),
+                _ => format!("#shape_sphere -1 {k} 0 0 1\n"),
+            };
+        }
+        let packed = packed(&text);
+        let (balls, boxes) = (&packed.balls[0], &packed.boxes[0]);
+        let wanted = |kinds: &[u32]| (0..40_000).filter(|k| kinds.contains(&(k % 7))).collect::<Vec<u32>>();
+        assert_eq!((packed.balls.len(), packed.boxes.len(), packed.rounds.len()), (1, 1, 1));
+        assert_eq!((&boxes.numbers, &balls.numbers), (&wanted(&[0]), &wanted(&[3, 4, 5, 6])));
+        assert_eq!(packed.rounds[0].numbers, wanted(&[1, 2]));
+        let x = |number: u32| packed.frame.point(Vec3::X * f64::from(number)).x as f32;
+        assert!(balls.things.iter().zip(&balls.numbers).all(|(ball, number)| ball.place[0] == x(*number)));
     }
 
     #[test]

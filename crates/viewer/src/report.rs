@@ -42,6 +42,7 @@ fn attributes(state: &State, view: Option<egui::Rect>) -> Vec<(&'static str, Str
     let scene = document.and_then(|document| document.path.file_name());
     let traced = state.traced.as_ref();
     let number = |camera: dotray_scene::model::Camera| crate::edit::camera_line(&camera);
+    let hidden: usize = state.hidden.ranges().iter().map(|range| range.len()).sum();
     let texts: Vec<&str> = state.messages.iter().map(|message| message.text.as_str()).collect();
     vec![
         ("aria-label", sentence(state)),
@@ -52,6 +53,8 @@ fn attributes(state: &State, view: Option<egui::Rect>) -> Vec<(&'static str, Str
         ("data-prepared", state.prepared.to_string()),
         ("data-traced", traced.is_some_and(|traced| traced.image.is_some()).to_string()),
         ("data-camera", state.camera().map_or_else(String::new, number)),
+        ("data-tracers", state.tracers.map_or_else(String::new, |count| count.to_string())),
+        ("data-hidden", hidden.to_string()),
         ("data-rays", state.rays.as_ref().map_or(0, |rays| rays.rows.len()).to_string()),
         ("data-selected", state.selection.as_ref().map_or_else(String::new, |it| it.name.clone())),
         ("data-messages", texts.join("\n")),
@@ -77,5 +80,6 @@ fn sentence(state: &State) -> String {
     };
     let errors = state.messages.iter().filter(|message| message.error).count();
     let faults = if errors > 0 { format!("; {errors} errors in the scene") } else { String::new() };
-    format!("rayview: {scene}; {mode}{faults}")
+    let left_out = if state.hidden.is_empty() { "" } else { ", hidden shapes left out" };
+    format!("rayview: {scene}; {mode}{left_out}{faults}")
 }

@@ -108,6 +108,8 @@ pub struct State {
     pub traced: Option<Traced>,
     /// Whether the tracer has the scene.
     pub prepared: bool,
+    /// How many threads trace; `None` where another program does not tell.
+    pub tracers: Option<usize>,
     /// Which shapes are not shown.
     pub hidden: Hidden,
     /// What is selected.
@@ -137,6 +139,7 @@ impl State {
     /// Nothing to show yet.
     pub fn new(link: Link) -> Self {
         Self {
+            tracers: link.threads(),
             link,
             raster: None,
             source: None,
@@ -212,6 +215,7 @@ impl State {
                 }
                 News::Failed(messages) => self.messages = messages,
                 News::Prepared(_) => self.prepared_now(),
+                News::Tracers(count) => self.tracers = Some(count),
                 News::Sent(source) => self.sent(source),
                 News::Notice(sentence) => self.notice = sentence,
                 News::Reply(reply) => self.reply(reply, ctx),
@@ -244,9 +248,12 @@ impl State {
     }
 
     fn prepared_now(&mut self) {
-        self.prepared = true;
+        (self.prepared, self.tracers) = (true, self.link.threads());
         if let Some(document) = self.document.as_ref().filter(|document| document.is_edited()) {
             self.link.send(Command::Style(Box::new(document.style.clone())));
+        }
+        if !self.hidden.is_empty() {
+            self.link.send(Command::Hide(self.hidden.clone()));
         }
         self.restart();
     }
@@ -271,6 +278,8 @@ impl State {
             Reply::Seen(seen) => self.hovered = seen,
             Reply::Rays(rows) => self.rays_came(rows),
             Reply::Refused(sentence) => self.notice = sentence,
+            // Nobody helps a screen.
+            Reply::Part(_) => {}
         }
     }
 
@@ -406,14 +415,20 @@ impl State {
         self.stale = true;
     }
 
-    /// Changes which shapes are shown.
+    /// Changes which shapes are shown, in both pictures.
     pub fn set_hidden(&mut self, change: impl FnOnce(&mut Hidden, u32)) {
         let count = self.document.as_ref().map_or(0, |document| document.shape_count);
+        let before = self.hidden.clone();
         change(&mut self.hidden, count);
+        if self.hidden == before {
+            return;
+        }
         if let Some(raster) = &mut self.raster {
             raster.hide(&self.hidden);
         }
-        self.stale = true;
+        self.link.send(Command::Hide(self.hidden.clone()));
+        self.hovered = None;
+        self.moved();
     }
 
     /// Looks at what is selected, or at everything.

@@ -1,13 +1,20 @@
 //! Materials and lights as rows of four numbers, which a shader reads from a texture: so their number has no limit.
 
 use dotray_geometry::Vec3;
+use dotray_render::noise::PERMUTATION;
 use dotray_scene::model::Attenuation;
 use dotray_scene::model::Light;
 use dotray_scene::model::Tint;
+use dotray_scene::procedural::Bump;
+use dotray_scene::procedural::Pattern;
+use dotray_scene::procedural::Procedural;
 use dotray_scene::resolved::ResolvedMaterial;
 
 /// Texels a material takes.
 pub const MATERIAL_TEXELS: usize = 4;
+
+/// Texels a clause of a material's 3-D textures and bumps takes.
+pub const CLAUSE_TEXELS: usize = 3;
 
 /// Texels a light takes.
 pub const LIGHT_TEXELS: usize = 7;
@@ -37,18 +44,61 @@ fn texel(v: Vec3, w: f64) -> [f32; 4] {
     v.extend(w).to_array().map(|x| x.clamp(-1e30, 1e30) as f32)
 }
 
-/// The materials, each of [`MATERIAL_TEXELS`] texels.
+/// The materials, each of [`MATERIAL_TEXELS`] texels, and behind them the clauses of their 3-D textures and bumps, each
+/// of [`CLAUSE_TEXELS`]: its kind, scale, octaves and height; a colour, and whether another one follows; the other colour.
 pub fn materials(materials: &[ResolvedMaterial]) -> Vec<[f32; 4]> {
-    let row = |material: &ResolvedMaterial| {
+    let mut clauses = Vec::new();
+    let first = MATERIAL_TEXELS * materials.len();
+    let mut row = |material: &ResolvedMaterial| {
         let texture = material.texture.map_or(-1.0, f64::from);
+        let before = clauses.len();
+        clauses.extend(clauses_of(&material.procedural));
+        let carving = if clauses.len() == before { -1.0 } else { (first + before) as f64 };
         [
             texel(material.ambient, material.shininess),
             texel(material.diffuse, texture),
-            texel(material.specular, 0.0),
+            texel(material.specular, carving),
             texel(material.emissive, f64::from(u8::from(material.texture_on_all_light))),
         ]
     };
-    materials.iter().flat_map(row).collect()
+    let mut texels: Vec<[f32; 4]> = materials.iter().flat_map(&mut row).collect();
+    texels.append(&mut clauses);
+    texels
+}
+
+/// The clauses that the shader knows: slopes of images are not among them.
+fn clauses_of(procedural: &Procedural) -> Vec<[f32; 4]> {
+    let head = |kind: f64, scale: f64, octaves: u32, height: f64| {
+        texel(Vec3::new(kind, scale, f64::from(octaves)), height)
+    };
+    let solids = procedural.solids.iter().map(|solid| {
+        let kind = match solid.pattern {
+            Pattern::Noise => 0.0,
+            Pattern::Marble => 1.0,
+            Pattern::Wood => 2.0,
+            Pattern::Checker => 3.0,
+        };
+        let colors = (texel(solid.color, 1.0), texel(solid.color2, 0.0));
+        [head(kind, solid.scale, solid.octaves, 0.0), colors.0, colors.1]
+    });
+    let bumps = procedural.bumps.iter().filter_map(|bump| match *bump {
+        Bump::Noise { scale, octaves, height } => {
+            Some([head(4.0, scale, octaves, height), texel(Vec3::ZERO, 1.0), texel(Vec3::ZERO, 0.0)])
+        }
+        Bump::Image { .. } => None,
+    });
+    let mut clauses: Vec<[[f32; 4]; CLAUSE_TEXELS]> = solids.chain(bumps).collect();
+    if let Some([_, [_, _, _, more], _]) = clauses.last_mut() {
+        *more = 0.0;
+    }
+    clauses.concat()
+}
+
+/// The permutation of the noise, four numbers a word.
+pub fn permutation() -> [[u32; 4]; 16] {
+    let number = |at: usize| PERMUTATION.get(at).copied().map_or(0, u32::from);
+    let word = |at: usize| (0..4).fold(0, |word, byte| word | number(4 * at + byte) << (8 * byte));
+    std::array::from_fn(|row| std::array::from_fn(|column| word(4 * row + column)))
 }
 
 /// The lights, each of [`LIGHT_TEXELS`] texels: colour and kind; place and cosine of the cut-off; axis and exponent;

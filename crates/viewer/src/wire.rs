@@ -1,9 +1,13 @@
 //! What a screen and a tracer tell each other where they are not in one process: messages, and the bytes of messages.
 
+use crate::engine::Part;
 use crate::engine::Request;
 use crate::engine::Seen;
+use crate::engine::Share;
+use crate::hidden::Hidden;
 use crate::rays::RayRow;
 use dotray_geometry::Vec3;
+use dotray_render::TilePixels;
 use dotray_scene::Resolved;
 use dotray_scene::model::Light;
 use dotray_scene::resolved::ResolvedMaterial;
@@ -32,6 +36,8 @@ pub enum Ask {
     },
     /// Other lights, materials and colours of the same scene.
     Style(Box<Style>),
+    /// Leaves these shapes out, and no other.
+    Hide(Hidden),
     /// Traces a picture; the one under way is dropped.
     Draw(Box<Request>),
     /// Drops the picture under way.
@@ -44,6 +50,8 @@ pub enum Ask {
     Shown,
     /// Stores a file of the scene.
     Store(String, Vec<u8>),
+    /// Traces tiles of a picture that another tracer puts together.
+    Help(Box<Share>),
 }
 
 /// What a tracer tells a screen.
@@ -70,6 +78,38 @@ pub enum Tell {
     Refused(String),
     /// Something that the user should know.
     Notice(String),
+    /// How many tracers have the scene of this number.
+    Tracers(u64, usize),
+    /// Tiles for the tracer that has asked for help.
+    Part(Box<SentPart>),
+}
+
+/// Tiles on their way.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SentPart {
+    /// Of which request.
+    pub serial: u64,
+    /// How many of the coarse looks were done.
+    pub looks: usize,
+    /// The bytes of the tiles.
+    pub tiles: Vec<Vec<u8>>,
+    /// Whether these are the last ones of their share.
+    pub ended: bool,
+}
+
+impl SentPart {
+    /// Of these tiles.
+    pub fn of(part: &Part) -> Self {
+        let Part { serial, looks, tiles, ended } = part;
+        let tiles = tiles.iter().map(TilePixels::to_bytes).collect();
+        Self { serial: *serial, looks: *looks, tiles, ended: *ended }
+    }
+
+    /// The tiles, as far as they have come whole.
+    pub fn part(&self) -> Part {
+        let tiles = self.tiles.iter().filter_map(|bytes| TilePixels::from_bytes(bytes)).collect();
+        Part { serial: self.serial, looks: self.looks, tiles, ended: self.ended }
+    }
 }
 
 /// A picture on its way.

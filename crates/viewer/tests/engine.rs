@@ -11,12 +11,14 @@ use dotray_render::PrepareOptions;
 use dotray_render::Silent;
 use dotray_render::World;
 use dotray_render::inspect::RayKind;
+use dotray_scene::Resolved;
 use dotray_scene::files::Disk;
 use rayview::document::open;
 use rayview::engine::Command;
 use rayview::engine::Engine;
 use rayview::engine::Reply;
 use rayview::engine::Request;
+use rayview::hidden::Hidden;
 use std::path::Path;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -191,6 +193,81 @@ fn edited_materials_and_lights_are_traced_without_building_anything_anew() {
     let world = World::prepare(again.resolved, &Disk, &PrepareOptions::default()).expect("a world");
     let expected = dotray_render::render(&world, &request.options, &Silent).expect("a picture").image;
     assert_eq!(image.samples(), expected.samples());
+}
+
+/// What is hidden is not traced: the picture is that of a file without those shapes, clicks name the others by their
+/// own numbers, and lights that were edited stay so.
+#[test]
+fn hidden_shapes_are_left_out() {
+    let head = "#camera 0 0 6 0 0 -1 0 1 0 .5 #background .1 .2 .3 #light_dir 1 1 1 0 -1 -1
+        #material .1 .1 .1 .5 .5 .5 .2 .2 .2 0 0 0 .6 0 1 -1 !m!\n";
+    // The first and the last shape are the scene's bounds, so that what counts as close stays the same.
+    let shapes = [
+        "#shape_sphere 0 -3 -3 -1 .5",
+        "#group_begin 1 0 0 0 0 1 0 .5 0 0 1 0 0 0 0 1",
+        "#shape_sphere 0 -1 0 0 1",
+        "#shape_sphere 0 1 0 0 .8",
+        "#group_end",
+        "#shape_box 0 0 -1.5 0 3 .5 2",
+        "#shape_sphere 0 3 3 1 .5",
+    ];
+    let text = |left_out: &[usize]| {
+        let kept = shapes.iter().enumerate().filter(|(at, _)| !left_out.contains(at));
+        head.to_owned() + &kept.map(|(_, line)| *line).collect::<Vec<_>>().join("\n")
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let read = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        open(&path, &Disk).expect("a scene")
+    };
+    let prepared =
+        |resolved| Box::new(World::prepare(resolved, &Disk, &PrepareOptions::default()).expect("a world"));
+    let whole = read("whole.ray", &text(&[])).resolved;
+    let world = prepared(whole.clone());
+    let request = |serial| request(&world, serial, Options { width: 90, height: 60, ..Options::default() });
+    let requests: Vec<_> = (0..6).map(request).collect();
+    let mut engine = Engine::default();
+    engine.handle(Command::World(Some(world)));
+    engine.handle(Command::Whole(Box::new(whole), PrepareOptions::default()));
+    let rendered = |text: &str, style: Option<&Resolved>| {
+        let mut world = prepared(read("part.ray", text).resolved);
+        style.inspect(|style| world.restyle(style));
+        dotray_render::render(&world, &requests[0].options, &Silent).expect("a picture").image
+    };
+    // Shapes 1 and 3: a sphere in the group, and the box.
+    let mut hidden = Hidden::default();
+    hidden.hide(1..2);
+    hidden.hide(3..4);
+    engine.handle(Command::Hide(hidden.clone()));
+    engine.handle(Command::Draw(requests[0].clone()));
+    let (image, _) = finish(&mut engine, 0);
+    assert_eq!(image.samples(), rendered(&text(&[2, 5]), None).samples());
+    assert_ne!(image.samples(), rendered(&text(&[]), None).samples());
+    // The sphere that is left is still number 2.
+    match engine.handle(Command::Inspect(requests[1].clone(), 56.0, 34.0)).as_slice() {
+        [Reply::Rays(rows)] => assert_eq!(rows[0].met.map(|(number, _)| number), Some(2)),
+        other => panic!("{other:?}"),
+    }
+    match engine.handle(Command::Look(requests[1].clone(), 56.0, 34.0)).as_slice() {
+        [Reply::Seen(Some(seen))] => assert_eq!(seen.number, 2),
+        other => panic!("{other:?}"),
+    }
+    // Other lights, and then all shapes again.
+    let mut style = read("style.ray", &text(&[])).document.style;
+    style.background = dotray_geometry::Vec3::new(0.4, 0.0, 0.0);
+    engine.handle(Command::Style(Box::new(style.clone())));
+    engine.handle(Command::Draw(requests[2].clone()));
+    assert_eq!(finish(&mut engine, 2).0.samples(), rendered(&text(&[2, 5]), Some(&style)).samples());
+    engine.handle(Command::Hide(Hidden::default()));
+    engine.handle(Command::Draw(requests[3].clone()));
+    assert_eq!(finish(&mut engine, 3).0.samples(), rendered(&text(&[]), Some(&style)).samples());
+    // Nothing at all is the background.
+    hidden.hide(0..5);
+    engine.handle(Command::Hide(hidden));
+    engine.handle(Command::Draw(requests[4].clone()));
+    let (image, _) = finish(&mut engine, 4);
+    assert!(image.samples().chunks_exact(3).all(|pixel| *pixel == [0.4, 0.0, 0.0]));
 }
 
 #[test]

@@ -205,6 +205,12 @@ fn shapes_are_found_hidden_and_shown_alone() {
     stage.window.key("Escape");
     let without = SCENE.replace("  #shape_cone 0  0 1.2 0  .5 1.2 .2\n", "");
     stage.until_preview(&desk, "the cone is hidden", &without);
+    // What is hidden is not traced either: no shadow, no mirror image is left of it.
+    stage.window.key("t");
+    let traced = rendered(&without, &stage.path, &stage.options).to_rgb8(false);
+    desk.until("the cone is not traced", || stage.save(&desk).to_rgb8(false) == traced);
+    desk.keep("hidden");
+    stage.window.key("t");
     stage.window.key("shift+h");
     stage.until_preview(&desk, "everything is shown", SCENE);
     stage.click(FIRST_FOUND);

@@ -181,6 +181,94 @@ fn scenes_of_other_dialects_are_drawn_as_they_are_traced() {
     }
 }
 
+/// One of each shape in marble, wood, a chequer, noise and bumps, as it is and in frames of all sorts: which pixels are
+/// off says what of them is not drawn as it is traced.
+#[test]
+fn textures_in_space_and_bumps_are_drawn_as_they_are_traced() {
+    let Some(mut raster) = raster() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("carved.ray");
+    let clauses = [
+        ("marble", "marble scale=1.6 octaves=5 color=1,.99,.96 color2=.34,.3,.26"),
+        ("wood", "wood scale=3 octaves=4 color=1,1,1 color2=.46,.38,.32"),
+        ("noise", "noise scale=2.5 octaves=5 color=1,.9,.3 color2=.1,.2,.6"),
+        ("checker", "checker scale=2 color=.95,.92,.86 color2=.3,.2,.16; marble scale=.8 color2=.3,.7,.6"),
+        ("bump", "bump scale=6 octaves=2 height=.02"),
+    ];
+    for (name, clause) in clauses {
+        // The materials 0, 1 and 3 stand on the shapes in rows; the second one has a texture besides.
+        let text = every_shape().replace("!textured!", &format!("!{clause}!"));
+        let text = text
+            .replace("!plain!", &format!("!{clause}!"))
+            .replace("shiny 90", &format!("shiny 90; {clause}"));
+        std::fs::write(&path, &text).expect("written");
+        std::fs::write(folder.path().join("cells.png"), cells()).expect("written");
+        let opened = opened(&path);
+        load(&mut raster, &opened);
+        let picture = drawn(&mut raster, &opened);
+        let share = unlike(&format!("carved-{name}"), &picture, &rendered(opened));
+        // The same without the clause is another picture.
+        std::fs::write(&path, text.replace(clause, "")).expect("written");
+        let bare = unlike(&format!("bare-{name}"), &picture, &rendered(self::opened(&path)));
+        println!("{name}: {share:.4}, without: {bare:.4}");
+        assert!(bare > 0.05, "{name}: {bare}");
+        assert!(share < 0.005, "{name}: {share} of the pixels are off");
+    }
+    for (scene, most) in [("chess", 0.005), ("desk", 0.02)] {
+        let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+        let opened = opened(&scenes.join(scene).with_extension("ray"));
+        load(&mut raster, &opened);
+        let picture = drawn(&mut raster, &opened);
+        let share = unlike(scene, &picture, &rendered(opened));
+        println!("{scene}: {share:.4}");
+        assert!(share < most, "{scene}: {share} of the pixels are off");
+    }
+}
+
+/// What is off the screen is not drawn, and nothing is missing for that.
+#[test]
+fn what_is_off_the_screen_is_left_out() {
+    let Some(mut raster) = raster() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("rows.ray");
+    let mut text = "#background .2 .3 .5 #light_dir 1 1 1 -1 -1 -1 #ambient .4 .4 .4
+        #material .4 .2 .1 .8 .6 .4 0 0 0 0 0 0 0 0 1 -1 !m!\n"
+        .to_owned();
+    // Groups in a row, each of a thousand shapes of three kinds.
+    for group in 0..24 {
+        text += &format!("#group_begin 1 0 0 {} 0 1 0 0 0 0 1 0 0 0 0 1\n", group * 4);
+        for k in 0..1020 {
+            let (x, y, z) =
+                (f64::from(k % 10) * 0.3, f64::from(k / 10 % 10) * 0.3, f64::from(k / 100) * -0.3);
+            text += &match k % 3 {
+                0 => format!("#shape_sphere 0 {x} {y} {z} .1\n"),
+                1 => format!("#shape_box 0 {x} {y} {z} .2 .1 .1\n"),
+                _ => format!("#shape_cylinder 0 {x} {y} {z} .1 .2\n"),
+            };
+        }
+        text += "#group_end\n";
+    }
+    // All of it, a part from near, from the midst, along the row, and away from it.
+    let views = [
+        ("all", "46 2 90 0 0 -1 0 1 0 .45", 1.0..=1.0),
+        ("near", "30 1.5 5 0 0 -1 0 1 0 .4", 0.05..=0.4),
+        ("midst", "46 1 -1 .2 .1 -1 0 1 0 .5", 0.0..=0.4),
+        ("along", "-3 2 2 1 0 -.05 0 1 0 .3", 0.8..=1.0),
+        ("away", "46 1 9 0 0 1 0 1 0 .5", 0.0..=0.0),
+    ];
+    for (name, camera, wanted) in views {
+        std::fs::write(&path, format!("#camera {camera}\n{text}")).expect("written");
+        let opened = opened(&path);
+        load(&mut raster, &opened);
+        let picture = drawn(&mut raster, &opened);
+        let part = raster.things_in_sight() as f64 / f64::from(opened.document.shape_count);
+        let share = unlike(&format!("sight-{name}"), &picture, &rendered(opened));
+        println!("{name}: {part:.3} of the shapes, {share:.4} of the pixels are off");
+        assert!(wanted.contains(&part), "{name}: {part} of the shapes");
+        assert!(share < 0.01, "{name}: {share} of the pixels are off");
+    }
+}
+
 /// A scene of so many shapes that a driver in software begins with a draft.
 #[test]
 fn a_draft_looks_alike_and_the_whole_comes_after_it() {

@@ -1,10 +1,14 @@
 //! Shapes in the GPU's memory, drawn at once or part by part.
 
 use super::pipelines::Pipelines;
+use super::sight::Sight;
 use crate::hidden::Hidden;
 use crate::pack::Batch;
+use crate::pack::Bounded;
 use crate::pack::Packed;
 use eframe::wgpu;
+use glam::Vec3;
+use rayon::prelude::*;
 use std::ops::Range;
 use wgpu::util::DeviceExt;
 
@@ -14,16 +18,49 @@ struct Held {
     buffer: wgpu::Buffer,
     numbers: Vec<u32>,
     shown: Vec<Range<u32>>,
+    /// Boxes around every so many things, and which of those that are shown can be on the screen.
+    chunks: Vec<[Vec3; 2]>,
+    in_sight: Vec<Range<u32>>,
+}
+
+/// Things that are looked at together: groups stand together in a file, and mostly in space.
+const CHUNK: usize = 512;
+
+fn around<T: Bounded>(things: &[T]) -> [Vec3; 2] {
+    let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+    let grown = |[low, high]: [Vec3; 2], [a, b]: [Vec3; 2]| [low.min(a), high.max(b)];
+    things.iter().map(Bounded::corners).fold(nothing, grown)
 }
 
 impl Held {
-    fn all<T: bytemuck::Pod>(device: &wgpu::Device, batches: &[Batch<T>]) -> Vec<Self> {
-        let held = |batch: &Batch<T>| Self {
-            buffer: vertex_buffer(device, bytemuck::cast_slice(&batch.things)),
-            numbers: batch.numbers.clone(),
-            shown: Hidden::default().shown(&batch.numbers),
+    fn all<T: bytemuck::Pod + Bounded + Sync>(device: &wgpu::Device, batches: &[Batch<T>]) -> Vec<Self> {
+        let held = |batch: &Batch<T>| {
+            let shown = Hidden::default().shown(&batch.numbers);
+            Self {
+                buffer: vertex_buffer(device, bytemuck::cast_slice(&batch.things)),
+                numbers: batch.numbers.clone(),
+                in_sight: shown.clone(),
+                shown,
+                chunks: batch.things.par_chunks(CHUNK).map(around).collect(),
+            }
         };
         batches.iter().map(held).collect()
+    }
+
+    /// Keeps what can be seen of what is shown: as few ranges as there can be.
+    fn look(&mut self, sight: &Sight) {
+        self.in_sight.clear();
+        let mut at = 0;
+        let seen = self.chunks.chunk_by(|a, b| sight.misses(*a) == sight.misses(*b)).filter_map(|chunks| {
+            let first = at;
+            at += (chunks.len() * CHUNK) as u32;
+            chunks.first().filter(|chunk| !sight.misses(**chunk)).map(|_| first..at)
+        });
+        for seen in seen {
+            let first = self.shown.partition_point(|range| range.end <= seen.start);
+            let shown = self.shown.iter().skip(first).take_while(|range| range.start < seen.end);
+            self.in_sight.extend(shown.map(|range| range.start.max(seen.start)..range.end.min(seen.end)));
+        }
     }
 }
 
@@ -56,17 +93,27 @@ impl HeldShapes {
     /// Takes which shapes are shown.
     pub fn hide(&mut self, hidden: &Hidden) {
         for list in [&mut self.balls, &mut self.rounds, &mut self.boxes, &mut self.triangles] {
-            list.iter_mut().for_each(|held| held.shown = hidden.shown(&held.numbers));
+            for held in list {
+                held.shown = hidden.shown(&held.numbers);
+                held.in_sight.clone_from(&held.shown);
+            }
         }
     }
 
-    /// How many things are shown.
-    pub fn count(&self) -> u64 {
-        let all = [&self.balls, &self.rounds, &self.boxes, &self.triangles].into_iter().flatten();
-        all.flat_map(|held| &held.shown).map(|range| range.len() as u64).sum()
+    /// Leaves out what is off the screen, until the next look.
+    pub fn look(&mut self, sight: &Sight) {
+        for list in [&mut self.balls, &mut self.rounds, &mut self.boxes, &mut self.triangles] {
+            list.iter_mut().for_each(|held| held.look(sight));
+        }
     }
 
-    /// Draws a part of the things that are shown, in their order.
+    /// How many things are shown and can be seen.
+    pub fn count(&self) -> u64 {
+        let all = [&self.balls, &self.rounds, &self.boxes, &self.triangles].into_iter().flatten();
+        all.flat_map(|held| &held.in_sight).map(|range| range.len() as u64).sum()
+    }
+
+    /// Draws a part of the things that are shown and can be seen, in their order.
     pub fn draw(&self, pipelines: &Pipelines, pass: &mut wgpu::RenderPass<'_>, part: &Range<u64>) {
         let kinds = [
             (&pipelines.balls, &self.balls, Some(4)),
@@ -78,7 +125,7 @@ impl HeldShapes {
         for (pipeline, list, vertices) in kinds {
             for held in list {
                 let mut ready = false;
-                for range in &held.shown {
+                for range in &held.in_sight {
                     let length = range.len() as u64;
                     let from = part.start.max(at).min(at + length) - at;
                     let to = part.end.max(at).min(at + length) - at;

@@ -72,7 +72,7 @@ impl Pipelines {
             depth: wgpu::CompareFunction::Greater,
         };
         let rows = wgpu::vertex_attr_array![
-            0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Uint32, 4 => Uint32, 5 => Float32x2
+            0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Uint32, 4 => Uint32, 5 => Float32x2, 6 => Uint32
         ];
         let solid = Kind {
             vertex: "solid_vertex",
@@ -84,7 +84,9 @@ impl Pipelines {
         let triangle_list = wgpu::PrimitiveTopology::TriangleList;
         let cuboid =
             Kind { vertex: "box_vertex", fragment: "surface_fragment", topology: triangle_list, ..solid };
-        let corners = wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x2, 2 => Float32x2, 3 => Uint32];
+        let corners = wgpu::vertex_attr_array![
+            0 => Float32x3, 1 => Snorm16x2, 2 => Float32x2, 3 => Uint32, 6 => Uint32
+        ];
         let triangle = Kind {
             vertex: "corner_vertex",
             stride: size_of::<Corner>(),
@@ -142,6 +144,7 @@ fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             entry(2, texture(false, wgpu::TextureViewDimension::D2)),
             entry(3, texture(true, wgpu::TextureViewDimension::D2Array)),
             entry(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+            entry(5, texture(false, wgpu::TextureViewDimension::D2)),
         ],
     })
 }

@@ -14,6 +14,8 @@ struct View {
     ambient: vec4<f32>,
     // The number of lights; texels in a row of the tables.
     counts: vec4<u32>,
+    // That of the noise, four numbers a word.
+    permutation: array<vec4<u32>, 16>,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -21,6 +23,8 @@ struct View {
 @group(0) @binding(2) var lights: texture_2d<f32>;
 @group(0) @binding(3) var pictures: texture_2d_array<f32>;
 @group(0) @binding(4) var picture_sampler: sampler;
+// The rows of object_from_view, three a frame.
+@group(0) @binding(5) var frames: texture_2d<f32>;
 
 const NEVER: f32 = 3.0e38;
 
@@ -45,6 +49,112 @@ fn ray_at(place: vec2<f32>) -> vec3<f32> {
     return view.ahead.xyz + view.right.xyz * (place.x * view.right.w) + view.up.xyz * (place.y * view.up.w);
 }
 
+// ---- 3-D textures and bumps: places of object space, as the renderer's noise.rs and solid.rs have them
+
+fn permuted(i: u32) -> u32 {
+    let at = i & 255u;
+    let word = view.permutation[at >> 4u][(at >> 2u) & 3u];
+    return (word >> ((at & 3u) * 8u)) & 255u;
+}
+
+fn gradient(hash: u32) -> vec3<f32> {
+    let h = hash & 15u;
+    let first = select(1.0, -1.0, (h & 1u) != 0u);
+    let second = select(1.0, -1.0, (h & 2u) != 0u);
+    if (h < 4u) { return vec3<f32>(first, second, 0.0); }
+    if (h < 8u) { return vec3<f32>(first, 0.0, second); }
+    if (h == 12u || h == 14u) { return vec3<f32>(second, first, 0.0); }
+    return vec3<f32>(0.0, first, second);
+}
+
+// The gradient of the noise, and its value.
+fn noise(q: vec3<f32>) -> vec4<f32> {
+    let low = floor(q);
+    let f = q - low;
+    let cell = vec3<u32>(low - 256.0 * floor(low / 256.0));
+    let u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
+    let slope = 30.0 * f * f * (f * (f - 2.0) + 1.0);
+    var sum = vec4<f32>(0.0);
+    for (var i = 0u; i < 8u; i++) {
+        let corner = vec3<u32>(i & 1u, (i >> 1u) & 1u, i >> 2u);
+        let g = gradient(permuted(permuted(permuted(cell.x + corner.x) + cell.y + corner.y) + cell.z + corner.z));
+        let c = vec3<f32>(corner);
+        let value = dot(g, f - c);
+        let w = mix(1.0 - u, u, c);
+        let d = slope * (2.0 * c - 1.0);
+        let leaning = vec3<f32>(d.x * w.y * w.z, w.x * d.y * w.z, w.x * w.y * d.z);
+        let weight = w.x * w.y * w.z;
+        sum += vec4<f32>(g * weight + leaning * value, weight * value);
+    }
+    return sum;
+}
+
+// The sums over octaves: the gradient of the plain one, and it or that of absolute values. Octaves beyond the tenth
+// are finer than what single precision can place.
+fn octaves_of(q: vec3<f32>, octaves: f32, absolute: bool) -> vec4<f32> {
+    var sum = vec4<f32>(0.0);
+    var frequency = 1.0;
+    for (var k = 0; k < i32(min(octaves, 10.0)); k++) {
+        let n = noise(q * frequency);
+        sum += vec4<f32>(n.xyz, select(n.w, abs(n.w), absolute) / frequency);
+        frequency *= 2.0;
+    }
+    return sum;
+}
+
+fn weight_of(kind: f32, q: vec3<f32>, octaves: f32) -> f32 {
+    if (kind == 0.0) { return clamp(0.5 + 0.5 * octaves_of(q, octaves, false).w, 0.0, 1.0); }
+    if (kind == 1.0) { return 0.5 + 0.5 * sin(3.141592653589793 * (q.x + 2.0 * octaves_of(q, octaves, true).w)); }
+    if (kind == 2.0) { return fract(length(q.xz) + 0.2 * octaves_of(q, octaves, false).w); }
+    // Faces lie on borders of cells, within what single precision is off.
+    let cells = floor(q + 1e-4);
+    let sum = cells.x + cells.y + cells.z;
+    return select(0.0, 1.0, sum - 2.0 * floor(sum * 0.5) == 0.0);
+}
+
+struct Carved {
+    color: vec3<f32>,
+    normal: vec3<f32>,
+}
+
+// The product of the colours, and the unit normal leaned by the slopes.
+fn carved(first: f32, point: vec3<f32>, outward: vec3<f32>, frame: u32) -> Carved {
+    var result: Carved;
+    result.color = vec3<f32>(1.0);
+    result.normal = outward;
+    if (first < 0.0) { return result; }
+    let x = row_of(frames, frame * 3u);
+    let y = row_of(frames, frame * 3u + 1u);
+    let z = row_of(frames, frame * 3u + 2u);
+    let h = vec4<f32>(point, 1.0);
+    let p = vec3<f32>(dot(x, h), dot(y, h), dot(z, h));
+    var slopes = vec3<f32>(0.0);
+    var at = u32(first);
+    for (var more = 1.0; more > 0.0; at += 3u) {
+        let head = row_of(materials, at);
+        let one = row_of(materials, at + 1u);
+        let two = row_of(materials, at + 2u);
+        more = one.w;
+        if (head.x == 4.0) {
+            slopes += octaves_of(p * head.y, head.z, false).xyz * (head.w * head.y);
+        } else {
+            result.color *= mix(two.rgb, one.rgb, weight_of(head.x, p * head.y, head.z));
+        }
+    }
+    if (dot(slopes, slopes) > 0.0) {
+        let determinant = dot(x.xyz, cross(y.xyz, z.xyz));
+        let across = vec3<f32>(
+            dot(cross(y.xyz, z.xyz), outward),
+            dot(cross(z.xyz, x.xyz), outward),
+            dot(cross(x.xyz, y.xyz), outward),
+        );
+        let n = normalize(across * select(1.0, -1.0, determinant < 0.0));
+        let leaned = n - (slopes - n * dot(slopes, n));
+        result.normal = normalize(x.xyz * leaned.x + y.xyz * leaned.y + z.xyz * leaned.z);
+    }
+    return result;
+}
+
 // ---- shading
 
 fn row_of(table: texture_2d<f32>, texel: u32) -> vec4<f32> {
@@ -57,10 +167,16 @@ fn power(base: f32, exponent: f32) -> f32 {
     return pow(base, exponent);
 }
 
-fn shade(point: vec3<f32>, ray: vec3<f32>, outward: vec3<f32>, st: vec2<f32>, material: u32) -> vec4<f32> {
+fn shade(
+    point: vec3<f32>,
+    ray: vec3<f32>,
+    outward: vec3<f32>,
+    st: vec2<f32>,
+    material: u32,
+    frame: u32,
+) -> vec4<f32> {
     let d = normalize(ray);
-    var n = normalize(outward);
-    if (dot(n, d) > 0.0) { n = -n; }
+    let straight = normalize(outward);
     let ambient = row_of(materials, material * 4u + 0u);
     let diffuse = row_of(materials, material * 4u + 1u);
     let specular = row_of(materials, material * 4u + 2u);
@@ -68,6 +184,10 @@ fn shade(point: vec3<f32>, ray: vec3<f32>, outward: vec3<f32>, st: vec2<f32>, ma
     let layer = max(i32(diffuse.w), 0);
     var texel = textureSampleLevel(pictures, picture_sampler, st, layer, 0.0).rgb;
     if (diffuse.w < 0.0) { texel = vec3<f32>(1.0); }
+    let carving = carved(specular.w, point, straight, frame);
+    texel *= carving.color;
+    var n = carving.normal;
+    if (dot(straight, d) > 0.0) { n = -n; }
     var color = emissive.rgb + ambient.rgb * view.ambient.rgb * texel;
     let mirrored = reflect(d, n);
     for (var i = 0u; i < view.counts.x; i++) {
@@ -171,7 +291,7 @@ fn ball_fragment(in: Ball) -> Fragment {
     if (t < view.ahead.w) { discard; }
     let from_eye = ray * t;
     var out: Fragment;
-    out.color = shade(view.eye.xyz + from_eye, ray, from_eye - in.center.xyz, vec2<f32>(0.0), in.material);
+    out.color = shade(view.eye.xyz + from_eye, ray, from_eye - in.center.xyz, vec2<f32>(0.0), in.material, 0u);
     out.depth = depth_at(ray, t);
     return out;
 }
@@ -185,7 +305,8 @@ struct Solid {
     @location(1) @interpolate(flat, either) x: vec4<f32>,
     @location(2) @interpolate(flat, either) y: vec4<f32>,
     @location(3) @interpolate(flat, either) z: vec4<f32>,
-    @location(4) @interpolate(flat, either) which: vec2<u32>,
+    // Its material, unit shape and frame.
+    @location(4) @interpolate(flat, either) which: vec3<u32>,
     // Below and above.
     @location(5) @interpolate(flat, either) radii: vec2<f32>,
 }
@@ -199,12 +320,13 @@ fn solid_vertex(
     @location(3) material: u32,
     @location(4) unit: u32,
     @location(5) radii: vec2<f32>,
+    @location(6) frame: u32,
 ) -> Solid {
     var low = vec2<f32>(1.0);
     var high = vec2<f32>(-1.0);
     var behind = 0;
     for (var i = 0u; i < 8u; i++) {
-        let u = vec4<f32>(vec3<f32>(f32(i & 1u), f32(i >> 1u & 1u), f32(i >> 2u)) * 2.0 - 1.0, 1.0);
+        let u = vec4<f32>(vec3<f32>(f32(i & 1u), f32((i >> 1u) & 1u), f32(i >> 2u)) * 2.0 - 1.0, 1.0);
         let c = in_camera(vec3<f32>(dot(x, u), dot(y, u), dot(z, u)));
         if (c.z < view.ahead.w) {
             behind += 1;
@@ -234,7 +356,7 @@ fn solid_vertex(
     out.x = vec4<f32>(rx, dot(rx, eye));
     out.y = vec4<f32>(ry, dot(ry, eye));
     out.z = vec4<f32>(rz, dot(rz, eye));
-    out.which = vec2<u32>(material, unit);
+    out.which = vec3<u32>(material, unit, frame);
     out.radii = radii;
     return out;
 }
@@ -320,7 +442,7 @@ fn solid_fragment(in: Solid) -> Fragment {
     let t = met.t + ahead;
     var out: Fragment;
     let st = unit_texture(p, in.which.y, met.face, in.radii);
-    out.color = shade(view.eye.xyz + ray * t, ray, normal, st, in.which.x);
+    out.color = shade(view.eye.xyz + ray * t, ray, normal, st, in.which.x, in.which.z);
     out.depth = depth_at(ray, t);
     return out;
 }
@@ -333,6 +455,7 @@ struct Surface {
     @location(1) normal: vec3<f32>,
     @location(2) st: vec2<f32>,
     @location(3) @interpolate(flat, either) material: u32,
+    @location(4) @interpolate(flat, either) frame: u32,
 }
 
 fn box_texture(u: vec3<f32>, axis: u32, positive: bool) -> vec2<f32> {
@@ -349,6 +472,7 @@ fn box_vertex(
     @location(1) y: vec4<f32>,
     @location(2) z: vec4<f32>,
     @location(3) material: u32,
+    @location(6) frame: u32,
 ) -> Surface {
     let a = vec3<f32>(x.x, y.x, z.x);
     let b = vec3<f32>(x.y, y.y, z.y);
@@ -387,6 +511,7 @@ fn box_vertex(
     out.normal = normalize(normal) * sign;
     out.st = box_texture(u, axis, positive);
     out.material = material;
+    out.frame = frame;
     return out;
 }
 
@@ -398,6 +523,7 @@ fn corner_vertex(
     @location(1) folded: vec2<f32>,
     @location(2) st: vec2<f32>,
     @location(3) material: u32,
+    @location(6) frame: u32,
 ) -> Surface {
     let z = 1.0 - abs(folded.x) - abs(folded.y);
     let fold = max(-z, 0.0);
@@ -408,12 +534,13 @@ fn corner_vertex(
     out.normal = vec3<f32>(xy, z);
     out.st = st;
     out.material = material;
+    out.frame = frame;
     return out;
 }
 
 @fragment
 fn surface_fragment(in: Surface) -> @location(0) vec4<f32> {
-    return shade(in.point, in.point - view.eye.xyz, in.normal, in.st, in.material);
+    return shade(in.point, in.point - view.eye.xyz, in.normal, in.st, in.material, in.frame);
 }
 
 // ---- lines

@@ -43,6 +43,15 @@ impl Desk {
         }
     }
 
+    /// How many threads trace, where that is known.
+    pub fn threads(&self) -> Option<usize> {
+        match &self.tracer {
+            Tracer::Elsewhere(port) if port.is_served() => None,
+            // One leads; more are told of once they have the scene.
+            Tracer::Elsewhere(_) | Tracer::Here(_) => Some(1),
+        }
+    }
+
     /// A scene that was asked for before is not read any more.
     pub fn open(&mut self, asked: Asked) {
         (self.next, self.drawn_since) = (Some(asked), false);

@@ -42,6 +42,8 @@ pub struct Port {
     post: js_sys::Function,
     /// Whether large messages are packed, for a wire.
     packing: bool,
+    /// Whether it is the page's own, with several threads.
+    pub is_own: bool,
     arrived: Arrived,
     /// What the scene's files are to be stored as.
     outgoing: Arc<Mutex<Vec<Ask>>>,
@@ -59,6 +61,7 @@ impl Port {
     pub fn open(page: &Page, teller: &Teller) -> Option<Self> {
         let object = get(&page.given, "tracer")?;
         let packing = get(&page.given, "packing").is_some_and(|packing| packing.is_truthy());
+        let is_own = get(&object, "threads").is_some();
         let post = get(&object, "postMessage")?.dyn_into().ok()?;
         let arrived = Arrived::default();
         let (queue, wake) = (arrived.clone(), teller.wake.clone());
@@ -73,6 +76,7 @@ impl Port {
             object,
             post,
             packing,
+            is_own,
             arrived,
             outgoing: Arc::default(),
             before: Vec::new(),
@@ -80,17 +84,29 @@ impl Port {
         })
     }
 
+    /// Whether another program traces.
+    pub fn is_served(&self) -> bool {
+        self.packing
+    }
+
     fn ask(&self, ask: &Ask) {
         let bytes = bytes(ask);
         let bytes = if self.packing { packed(&bytes) } else { bytes };
+        let bytes = js_sys::Uint8Array::from(bytes.as_slice());
+        // A thread takes a second argument for something else; the page's own tracers are told what cannot wait.
+        let urgent = self.is_own && !matches!(ask, Ask::Look(..) | Ask::Shown | Ask::Store(..));
         // A tracer that is gone has said so.
-        let _ = self.post.call1(&self.object, &js_sys::Uint8Array::from(bytes.as_slice()));
+        let _ = match urgent {
+            true => self.post.call2(&self.object, &bytes, &JsValue::TRUE),
+            false => self.post.call1(&self.object, &bytes),
+        };
     }
 
     pub fn send(&self, command: Command) {
         self.ask(&match command {
             // Worlds are built where they are traced.
-            Command::World(_) => return,
+            Command::World(_) | Command::Whole(..) | Command::Help(_) => return,
+            Command::Hide(hidden) => Ask::Hide(hidden),
             Command::Style(style) => Ask::Style(Box::new(Style::of(&style))),
             Command::Draw(request) => Ask::Draw(request),
             Command::Stop => Ask::Stop,
@@ -141,7 +157,9 @@ impl Port {
                 let messages = texts.into_iter().map(|text| Message { error: true, text }).collect();
                 teller.tell(News::Failed(messages));
             }
-            Tell::Prepared(..) | Tell::Failed(..) => {}
+            Tell::Tracers(number, count) if current(number) => teller.tell(News::Tracers(count)),
+            // What tracers tell each other goes to no screen.
+            Tell::Prepared(..) | Tell::Failed(..) | Tell::Tracers(..) | Tell::Part(_) => {}
             Tell::Picture(sent) => {
                 self.ask(&Ask::Shown);
                 let sent = sent.whole(&self.before);

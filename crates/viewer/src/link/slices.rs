@@ -35,8 +35,10 @@ impl Slices {
         if let Some(parts) = self.unbuilt.take() {
             let (asked, resolved, textures) = *parts;
             let start = Instant::now();
+            let (whole, prepare) = (Box::new(resolved.clone()), asked.prepare.clone());
             if let Some(world) = teller.build(&asked, resolved, textures) {
                 self.send(Command::World(Some(world)));
+                self.send(Command::Whole(whole, prepare));
                 teller.tell(News::Prepared(start.elapsed().as_secs_f64()));
             }
         }

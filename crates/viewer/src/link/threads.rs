@@ -43,11 +43,18 @@ impl Desk {
         std::thread::spawn(move || {
             let Some((resolved, textures)) = teller.read(&asked, &*asked.source.files) else { return };
             let start = web_time::Instant::now();
+            let whole = Box::new(resolved.clone());
             if let Some(world) = teller.build(&asked, resolved, textures) {
                 let _ = commands.send(Command::World(Some(world)));
+                let _ = commands.send(Command::Whole(whole, asked.prepare.clone()));
                 teller.tell(News::Prepared(start.elapsed().as_secs_f64()));
             }
         });
+    }
+
+    /// How many threads trace.
+    pub fn threads(&self) -> Option<usize> {
+        Some(rayon::current_num_threads())
     }
 
     /// Threads need nobody to push them.

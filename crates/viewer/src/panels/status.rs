@@ -18,7 +18,14 @@ pub fn show(ui: &mut Ui, state: &State) {
         }
         ui.label(format!("{} × {}", state.size[0], state.size[1]));
         ui.separator();
-        let tracer = format!("Traced by {} threads, {}", rayon::current_num_threads(), level_name(level()));
+        let tracer = match state.tracers {
+            Some(threads) => format!(
+                "Traced by {threads} thread{}, {}",
+                if threads == 1 { "" } else { "s" },
+                level_name(level())
+            ),
+            None => "Traced by the program that serves this page".to_owned(),
+        };
         ui.label(traced(state)).on_hover_text(tracer);
         if let Some((seen, document)) = state.hovered.zip(state.document.as_ref()) {
             ui.separator();
@@ -38,9 +45,10 @@ fn traced(state: &State) -> String {
         let faulty = state.messages.iter().any(|message| message.error);
         return if faulty { "cannot be traced" } else { "preparing to trace …" }.to_owned();
     }
+    let left_out = if state.hidden.is_empty() { "" } else { ", hidden shapes left out" };
     match &state.traced {
-        Some(traced) if traced.image.is_some() => format!("traced in {:.2} s", traced.seconds),
-        Some(traced) => format!("tracing: {:.0} %", traced.done * 100.0),
+        Some(traced) if traced.image.is_some() => format!("traced in {:.2} s{left_out}", traced.seconds),
+        Some(traced) => format!("tracing: {:.0} %{left_out}", traced.done * 100.0),
         None => "preview".to_owned(),
     }
 }

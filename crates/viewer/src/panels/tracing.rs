@@ -106,7 +106,8 @@ pub fn save_picture(panels: &Panels, state: &mut State) {
     let path = std::path::Path::new(panels.picture_name.trim());
     let stored = state.encoded(path).and_then(|bytes| host::save(path, &bytes));
     state.notice = match stored {
-        Ok(()) => format!("saved: {}", path.display()),
+        Ok(()) if state.hidden.is_empty() => format!("saved: {}", path.display()),
+        Ok(()) => format!("saved without the hidden shapes: {}", path.display()),
         Err(sentence) => sentence,
     };
 }

@@ -39,7 +39,7 @@ pub fn show(panels: &mut Panels, ui: &mut Ui, state: &mut State) {
         }
     });
     if any_hidden_in_traced(state) {
-        ui.label(egui::RichText::new("Hidden shapes are traced all the same.").weak());
+        ui.label(egui::RichText::new("Hidden shapes are left out of the traced picture.").weak());
     }
     ui.separator();
     let asked =

@@ -130,9 +130,15 @@ impl Session<'_> {
                 let path = self.scene.to_string_lossy().into_owned();
                 Some(Some(Ask::Open { number, path, accel, files: Vec::new() }))
             }
-            Ask::Style(_) | Ask::Draw(_) | Ask::Stop | Ask::Look(..) | Ask::Inspect(..) | Ask::Shown => {
-                Some(Some(ask))
-            }
+            // Pages lead no crews.
+            Ask::Help(_) => None,
+            Ask::Style(_)
+            | Ask::Hide(_)
+            | Ask::Draw(_)
+            | Ask::Stop
+            | Ask::Look(..)
+            | Ask::Inspect(..)
+            | Ask::Shown => Some(Some(ask)),
         }
     }
 
@@ -179,7 +185,9 @@ impl Session<'_> {
             | Tell::Seen(_)
             | Tell::Rays(_)
             | Tell::Refused(_)
-            | Tell::Notice(_) => tell,
+            | Tell::Notice(_)
+            | Tell::Tracers(..)
+            | Tell::Part(_) => tell,
         };
         let packed = wire::packed(&wire::bytes(&tell));
         self.socket.send(Message::binary(packed)).ok()
