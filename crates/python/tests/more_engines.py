@@ -1,14 +1,17 @@
 """Ray's and MPI's own schedulers and workers, one of which is killed in the middle of a film: run by `test_engines.py`
-as `python more_engines.py ray FOLDER` in a namespace of its own, and as
+as `python more_engines.py ray FOLDER` and `… ray-cable FOLDER` in a namespace of its own, and as
 `mpiexec -n 3 python -m mpi4py.futures more_engines.py mpi FOLDER [kill]`. Prints what it found as JSON."""
 
 import json
 import os
 import signal
 import sys
+import tempfile
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
+from engines import Network, Process
 from many_hosts import film, scene
 
 
@@ -49,6 +52,56 @@ def with_ray(folder):
     return found
 
 
+def with_cable(folder):
+    """The cable of one of two hosts with workers is pulled."""
+    import ray
+
+    from dotray import cluster
+
+    # By itself Ray gives a host that is silent half a minute, and its connections minutes.
+    os.environ.update(
+        RAY_health_check_initial_delay_ms="0",
+        RAY_health_check_period_ms="1000",
+        RAY_health_check_timeout_ms="1000",
+        RAY_health_check_failure_threshold="3",
+        RAY_grpc_client_keepalive_time_ms="1000",
+        RAY_grpc_client_keepalive_timeout_ms="2000",
+        RAY_grpc_keepalive_time_ms="1000",
+        RAY_grpc_keepalive_timeout_ms="2000",
+    )
+    network = Network()
+    here, start = "10.77.0.1:6379", [str(Path(sys.executable).with_name("ray")), "start", "--block"]
+    with ExitStack() as stack:
+        # Sockets have short names only.
+        files = stack.enter_context(tempfile.TemporaryDirectory(prefix="ray", dir="/tmp", ignore_cleanup_errors=True))
+        head = ["--head", "--node-ip-address=10.77.0.1", "--port=6379", f"--temp-dir={files}"]
+        stack.enter_context(Process(*start, *head, "--num-cpus=0", "--include-dashboard=false"))
+        worker = [*start, f"--address={here}", "--node-ip-address=HOST", "--num-cpus=1"]
+        cables = [network.add_host(stack, worker)[1] for _ in range(2)]
+        connect(ray, here)
+        executor = cluster.RayExecutor()
+        film(executor, f"{folder}/warm")
+        quiet, quiet_seconds = film(executor, f"{folder}/quiet")
+        disturbed, seconds = film(executor, f"{folder}/cable", lambda: network.pull(cables[0]), patience=5.0)
+        return {"same": quiet == disturbed, "quiet": quiet_seconds, "cable": seconds}
+
+
+def connect(ray, address):
+    """Becomes a driver once the head and both workers are there."""
+    deadline = time.monotonic() + 90
+    while True:
+        try:
+            if not ray.is_initialized():
+                ray.init(address=address, _node_ip_address="10.77.0.1", log_to_driver=False)
+            if ray.cluster_resources().get("CPU") == 2:
+                return
+        except Exception:
+            if time.monotonic() > deadline:
+                raise
+        assert time.monotonic() < deadline, "no workers"
+        time.sleep(0.5)
+
+
 def with_mpi(folder, how):
     """All workers stay; or one is killed, which ends them all, and the same work goes on after that."""
     from mpi4py.futures import MPIPoolExecutor
@@ -74,8 +127,11 @@ def _slowly(_):
 
 def main():
     engine, folder, *how = sys.argv[1:]
-    found = with_ray(folder) if engine == "ray" else with_mpi(folder, *how)
-    print("\n" + json.dumps(found), flush=True)
+    engines = {"ray": with_ray, "ray-cable": with_cable, "mpi": with_mpi}
+    print("\n" + json.dumps(engines[engine](folder, *how)), flush=True)
+    if engine == "ray-cable":
+        # Ray would wait for the host that is not there.
+        os._exit(0)
 
 
 if __name__ == "__main__":
