@@ -38,9 +38,10 @@ def quiet(tmp_path_factory):
 
 
 def in_namespaces(how, folder):
-    """Runs Ray where nothing of it outlives the test: in namespaces of its own."""
-    if importlib.util.find_spec("ray") is None:
-        pytest.skip("no Ray")
+    """Runs an engine where nothing of it outlives the test: in namespaces of its own."""
+    module = "ray" if how.startswith("ray") else "mpi4py"
+    if importlib.util.find_spec(module) is None:
+        pytest.skip(f"no {module}")
     inside = f"ip link set lo up; exec {sys.executable} {SCRIPT} {how} {folder}"
     command = ["unshare", "-n", "-m", "-p", "-f", "--mount-proc", "--kill-child", "sh", "-c", inside]
     probe = ["unshare", "-n", "-m", "-p", "-f", "--mount-proc", "sh", "-c"]
@@ -52,12 +53,16 @@ def in_namespaces(how, folder):
     return found
 
 
-def test_ray_whose_cable_is_pulled(tmp_path, capsys):
-    found = in_namespaces("ray-cable", tmp_path)
+@pytest.mark.parametrize("engine", ["ray", "mpi"])
+def test_a_cable_is_pulled(tmp_path, capsys, engine):
+    launcher = Path(sys.executable).with_name("mpiexec")
+    if engine == "mpi" and not (launcher.exists() and b"HYDRA" in version(launcher) and shutil.which("nsenter")):
+        pytest.skip("no mpich")
+    found = in_namespaces(f"{engine}-cable", tmp_path)
     assert found["same"], found
     with capsys.disabled():
         print(
-            f"\n  Ray, the cable of one of two hosts pulled: 24 of 24 frames, {found['cable']:.1f} s "
+            f"\n  {engine}, the cable of one of two hosts pulled: 24 of 24 frames, {found['cable']:.1f} s "
             f"({found['quiet']:.1f} s undisturbed)"
         )
 
