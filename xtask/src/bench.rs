@@ -32,7 +32,7 @@ pub struct BenchArgs {
     /// With --check: commit the counts.
     #[arg(long, requires = "check")]
     update: bool,
-    /// Only this part (images, rays, parse, memory, python) or scene (rnd6, knot2, balls4 …); may be given several times.
+    /// Only this part (images, rays, parse, memory, python) or scene (rnd6, knot2 …); may be given several times.
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
     /// How often each program runs [default: 3, with --quick 1].
