@@ -11,6 +11,7 @@ use crate::peers::Peers;
 use crate::place::Place;
 use crate::plan;
 use crate::plan::Plan;
+use crate::python;
 use crate::report;
 use crate::results::Part;
 use crate::results::Results;
@@ -31,7 +32,7 @@ pub struct BenchArgs {
     /// With --check: commit the counts.
     #[arg(long, requires = "check")]
     update: bool,
-    /// Only this part (images, rays, parse, memory) or scene (rnd6, knot2, balls4 …); may be given several times.
+    /// Only this part (images, rays, parse, memory, python) or scene (rnd6, knot2 …); may be given several times.
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
     /// How often each program runs [default: 3, with --quick 1].
@@ -72,6 +73,7 @@ pub fn run(arguments: &BenchArgs) -> Result<(), String> {
     all.rays = found.rays.or(all.rays);
     all.parse = found.parse.or(all.parse);
     all.memory = found.memory.or(all.memory);
+    all.python = found.python.or(all.python);
     all.store(&path)?;
     println!("Results are in {}.", path.display());
     if plan.whole {
@@ -104,6 +106,10 @@ fn measured(plan: &Plan, place: &Place, peers: &Peers, machine: &Machine) -> Res
             plan::Part::Memory => {
                 let rows = rows_of(&scenes, |scene| kernels::memory(place, peers, scene, rounds));
                 found.memory = Some(Part { machine, rounds, rows });
+            }
+            plan::Part::Python => {
+                let rows = rows_of(&scenes, |scene| python::run(place, peers, scene, rounds));
+                found.python = Some(Part { machine, rounds, rows });
             }
         }
     }

@@ -40,6 +40,8 @@ mod images;
 
 mod kernels;
 
+mod python;
+
 mod report;
 
 mod instructions;

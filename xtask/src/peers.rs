@@ -40,12 +40,20 @@ pub fn install(place: &Place) {
     told("Embree 4", pip(place, "python3", "venv", EMBREE_WHEEL));
     told("Vulkan for OVITO", apt(&VULKAN));
     told("OVITO", pip(place, "python3", "venv", OVITO_WHEEL));
-    // Blender's wheels are for one version of Python each.
-    let python = std::env::var("PYTHON313").unwrap_or_else(|_| "python3.13".to_owned());
-    let cycles = output(Command::new(&python).arg("--version"))
-        .map_err(|why| format!("needs Python 3.13 (or PYTHON313, its path): {why}"))
-        .and_then(|_| pip(place, &python, "venv-bpy", BLENDER_WHEEL));
+    let cycles = python_for_blender()
+        .ok_or_else(|| "needs Python 3.13 (or PYTHON313, its path)".to_owned())
+        .and_then(|python| pip(place, &python, "venv-bpy", BLENDER_WHEEL));
     told("Cycles", cycles);
+}
+
+/// A Python of the one version that Blender's wheel is for: the one that is named, the path's, or pyenv's.
+fn python_for_blender() -> Option<String> {
+    let named = std::env::var("PYTHON313").ok();
+    let versions = std::env::home_dir().map(|home| home.join(".pyenv/versions"));
+    let versions = versions.and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+    let own = versions.map(|version| version.path().join("bin/python3.13").to_string_lossy().into_owned());
+    let mut all = named.into_iter().chain(["python3.13".to_owned()]).chain(own);
+    all.find(|python| output(Command::new(python).arg("--version")).is_ok())
 }
 
 /// Installs packages of the system.

@@ -13,11 +13,13 @@ pub enum Part {
     Parse,
     /// Pictures from memory.
     Memory,
+    /// Pictures from arrays of numpy.
+    Python,
 }
 
 impl Part {
     /// All, in their order.
-    pub const ALL: [Self; 4] = [Self::Images, Self::Rays, Self::Parse, Self::Memory];
+    pub const ALL: [Self; 5] = [Self::Images, Self::Rays, Self::Parse, Self::Memory, Self::Python];
 
     /// Its word.
     pub const fn name(self) -> &'static str {
@@ -26,6 +28,7 @@ impl Part {
             Self::Rays => "rays",
             Self::Parse => "parse",
             Self::Memory => "memory",
+            Self::Python => "python",
         }
     }
 
@@ -41,11 +44,12 @@ impl Part {
             }
             Self::Parse => &["rnd6", "rnd7", "knot2"],
             Self::Memory => &["rnd6", "pack6"],
+            Self::Python => &["rnd7"],
         };
         let (before, after): (&[&str], &[&str]) = match self {
             Self::Images => (&files::DATABASES, &files::SCANS),
             Self::Rays => (&[], &files::SCANS),
-            Self::Parse | Self::Memory => (&[], &[]),
+            Self::Parse | Self::Memory | Self::Python => (&[], &[]),
         };
         [before, own, after].concat()
     }
@@ -55,7 +59,7 @@ impl Part {
         match self {
             Self::Images => &["mirrors4", "rnd4", "knot0", "cyl4"],
             Self::Rays => &["rnd4", "cyl4", "cone4", "box4", "knot0"],
-            Self::Parse | Self::Memory => &["rnd5"],
+            Self::Parse | Self::Memory | Self::Python => &["rnd5"],
         }
     }
 }
@@ -92,6 +96,10 @@ impl Plan {
             if !part_names.is_empty() && !part_names.contains(&part) {
                 continue;
             }
+            // A wheel is built for it, which is not quick.
+            if part == Part::Python && quick && part_names.is_empty() {
+                continue;
+            }
             let all = scenes_of(part);
             let planned = |name: &str| Part::ALL.into_iter().any(|part| scenes_of(part).contains(&name));
             let fits = |name: &str| all.contains(&name) || !planned(name) || !part_names.is_empty();
@@ -119,6 +127,7 @@ fn can_have(part: Part, name: &str) -> bool {
         Part::Images | Part::Parse => true,
         // Rays start from the unit cube, which the databases' scenes do not fill.
         Part::Rays => !files::DATABASES.contains(&name),
+        Part::Python => name.starts_with("rnd"),
         Part::Memory => !files::is_shared(name) && crate::scenes::raw_kind(name) == Some("sph"),
     }
 }
@@ -146,7 +155,7 @@ mod tests {
     #[test]
     fn names_choose_parts_and_scenes() {
         let all = plan(false, &[]).expect("a whole run");
-        assert!(all.whole && all.parts.len() == 4 && all.rounds == 3);
+        assert!(all.whole && all.parts.len() == 5 && all.rounds == 3);
         let rays = plan(false, &["rays"]).expect("a part");
         assert!(rays.whole && rays.parts.len() == 1 && rays.parts[0].0 == Part::Rays);
         let scene = plan(false, &["cyl6"]).expect("a scene of one part");
@@ -155,6 +164,9 @@ mod tests {
         assert_eq!(both.parts, [(Part::Images, vec!["rnd3".to_owned()])]);
         assert!(!both.whole && !plan(true, &[]).expect("a quick run").whole);
         assert!(plan(false, &["rnd33"]).is_err());
+        assert_eq!(plan(true, &[]).expect("a quick run").parts.len(), 4);
+        let python = plan(true, &["python"]).expect("a quick part");
+        assert_eq!(python.parts, [(Part::Python, vec!["rnd5".to_owned()])]);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod images;
 mod kernels;
+mod python;
 
 use crate::machine::Machine;
 use crate::results::Results;
@@ -67,6 +68,9 @@ pub fn tables(results: &Results) -> Vec<(&'static str, String)> {
     }
     if let Some(part) = &results.memory {
         tables.push(("memory", machine(&part.machine, part.rounds) + "\n" + &kernels::memory(&part.rows)));
+    }
+    if let Some(part) = &results.python {
+        tables.push(("python", machine(&part.machine, part.rounds) + "\n" + &python::table(&part.rows)));
     }
     tables
 }

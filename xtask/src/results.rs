@@ -134,6 +134,8 @@ pub struct Results {
     pub parse: Option<Part<ParseRow>>,
     /// Pictures from memory.
     pub memory: Option<Part<MemoryRow>>,
+    /// Pictures from arrays of numpy.
+    pub python: Option<Part<ImageRow>>,
 }
 
 impl Results {

@@ -8,6 +8,7 @@ use dotray::image::Format;
 use dotray::image::ImageError;
 use dotray::image::NamedChannel;
 use dotray::image::encode;
+use dotray::render::Fingerprint;
 use dotray::render::Layer;
 use dotray::render::LayerPicture;
 use dotray::scene::number::General;
@@ -26,6 +27,17 @@ pub fn channels(layers: Vec<LayerPicture>) -> Vec<NamedChannel> {
         }
     }
     all
+}
+
+/// What a picture with these layers depends on: their bands have numbers that follow from which they are.
+pub fn with_layers(fingerprint: Fingerprint, layers: &[Layer]) -> Fingerprint {
+    if layers.is_empty() { fingerprint } else { fingerprint.with("layers", &names(layers)) }
+}
+
+/// The layers as they are typed.
+pub fn names(layers: &[Layer]) -> String {
+    let names: Vec<&str> = layers.iter().map(|layer| layer.name()).collect();
+    names.join(",")
 }
 
 /// `folder/a.png` → `folder/a.depth.png`

@@ -2,13 +2,22 @@
 
 use clap::Parser;
 use dotray::render::Antialias;
+use dotray::render::Film;
 use dotray::render::Fingerprint;
+use dotray::render::Layer;
+use dotray::render::LayerFilm;
 use dotray::render::Options;
 use dotray::render::Shadows;
 use dotray::render::TextureFilter;
+use dotray::render::Tile;
+use dotray::render::TilePixels;
+use dotray::render::tile_file::Contents;
+use dotray::render::tile_file::Known;
+use dotray::render::tile_file::read_tiles;
 use serde::Deserialize;
 use serde::Serialize;
 use std::fs;
+use std::io;
 use std::path::Path;
 use std::path::PathBuf;
 
@@ -16,6 +25,7 @@ use crate::args::Cli;
 use crate::args::Command;
 use crate::exit::Failure;
 use crate::layer_args::Background;
+use crate::layers;
 use crate::plan::Plan;
 use crate::render_args::RenderArgs;
 use crate::values::MissingTexture;
@@ -35,7 +45,7 @@ pub struct PiecePlan {
     pub options: Vec<String>,
     /// The animation, as it was typed.
     pub animation: Option<String>,
-    /// How many tiles a picture has.
+    /// How many tiles a picture has, the bands of its layers among them.
     pub tiles: u32,
     /// What the pictures depend on, their frames aside.
     pub fingerprint: Vec<(String, String)>,
@@ -53,7 +63,7 @@ pub struct Piece {
     pub parts: Vec<Part>,
 }
 
-/// Consecutive tiles of one picture.
+/// Consecutive tiles of one picture; after the last one come the bands of its layers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
@@ -98,6 +108,19 @@ impl PiecePlan {
             Some(frame) => base.with("frame", &frame.to_string()),
             None => base,
         }
+    }
+
+    /// Refuses a scene, options or an animation other than those of the plan.
+    pub fn check(&self, path: &Path, found: &Fingerprint) -> Result<(), Failure> {
+        let differences = self.fingerprint(None).differences(found, "in the plan", "here");
+        if differences.is_empty() {
+            return Ok(());
+        }
+        let list = differences.join("; ");
+        Err(Failure::Failed(format!(
+            "the plan `{}` is of another picture ({list}); plan anew",
+            path.display()
+        )))
     }
 
     /// What `dotray render` would have been told; `more` are further options.
@@ -171,6 +194,9 @@ pub fn words_of(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
     if let Some(most) = typed.max_pixels {
         say("max-pixels", most.to_string());
     }
+    if !plan.layers.is_empty() {
+        say("layers", layers::names(&plan.layers));
+    }
     match &typed.background {
         Some(Background::Color(color)) => say("background", format!("{},{},{}", color.x, color.y, color.z)),
         Some(Background::Transparent) => say("background", "transparent".to_owned()),
@@ -181,6 +207,57 @@ pub fn words_of(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
         MissingTexture::Error => {}
     }
     words
+}
+
+/// What the parts of one picture are put together on.
+pub struct Sheet {
+    /// The picture.
+    pub picture: Film,
+    /// Its layers.
+    pub layers: LayerFilm,
+}
+
+impl Sheet {
+    /// All is missing.
+    pub fn new(options: &Options, layers: &[Layer]) -> Result<Self, Failure> {
+        Ok(Self { picture: Film::new(options)?, layers: LayerFilm::new(options, layers)? })
+    }
+
+    /// How many tiles and bands there are.
+    pub fn count(&self) -> u32 {
+        (self.picture.tiles().len() + self.layers.bands().len()) as u32
+    }
+
+    /// The tiles of a part, and its bands.
+    pub fn of_part(&self, part: &Part) -> (Vec<Tile>, Vec<Tile>) {
+        let wanted = |tile: &&Tile| tile.number >= part.first && tile.number - part.first < part.count;
+        let [tiles, bands] = [self.picture.tiles(), self.layers.bands()];
+        (tiles.iter().filter(wanted).copied().collect(), bands.iter().filter(wanted).copied().collect())
+    }
+
+    /// Reads the file of a part: shows each whole tile and band that belongs to it.
+    pub fn read(&self, path: &Path, part: &Part, mut take: impl FnMut(TilePixels)) -> io::Result<Contents> {
+        let known = [
+            Known { tiles: self.picture.tiles(), channels: self.picture.channels() },
+            Known { tiles: self.layers.bands(), channels: self.layers.channels() },
+        ];
+        let wanted = |number: u32| number >= part.first && number - part.first < part.count;
+        read_tiles(path, &known, |pixels| {
+            if wanted(pixels.tile.number) {
+                take(pixels);
+            }
+        })
+    }
+
+    /// Takes a tile or a band; false where it is none of this picture, or is there already.
+    pub fn store(&mut self, pixels: &TilePixels) -> bool {
+        self.picture.store(pixels) || self.layers.store(pixels)
+    }
+
+    /// Whether nothing is missing.
+    pub fn is_complete(&self) -> bool {
+        self.picture.is_complete() && self.layers.is_complete()
+    }
 }
 
 /// Cuts tiles into `count` pieces of about the same cost, in order, the last of which are empty where there are fewer

@@ -1,6 +1,7 @@
 //! A scene that moves: its world, frame by frame.
 
 use dotray::render::Fingerprint;
+use dotray::render::Layer;
 use dotray::render::Textures;
 use dotray::render::World;
 use dotray::render::on_threads;
@@ -19,6 +20,7 @@ use crate::input;
 use crate::input::TimedDisk;
 use crate::input::Written;
 use crate::keyframes::Animation;
+use crate::layers::with_layers;
 use crate::limits;
 use crate::messages::Messages;
 use crate::plan::Plan;
@@ -179,15 +181,20 @@ impl<'a> Stage<'a> {
         Extras::new(self.plan, resolved, &self.sources)
     }
 
-    /// What pictures of the scene depend on, where nothing has moved. Asked for before the first frame.
-    pub fn fingerprint(&mut self) -> Result<Fingerprint, Failure> {
+    /// What pictures of the scene depend on, where nothing has moved, and what they all have besides: layers, and the
+    /// text of an animation. Asked for before the first frame.
+    pub fn fingerprint(&mut self, layers: &[Layer], animation: Option<&str>) -> Result<Fingerprint, Failure> {
         let mut resolved = self.still.take().ok_or(Failure::Reported)?;
         self.complete(&mut resolved)?;
         let textures = self.load_textures(&resolved)?;
         let fingerprint = Fingerprint::of(&resolved, &textures, &self.plan.options);
         self.textures = Some(textures);
         self.still = Some(resolved);
-        Ok(fingerprint)
+        let fingerprint = with_layers(fingerprint, layers);
+        Ok(match animation {
+            Some(text) => fingerprint.with_hash_of("animation", text.as_bytes()),
+            None => fingerprint,
+        })
     }
 
     fn camera_of(&self, frame: u32) -> Result<Camera, Failure> {

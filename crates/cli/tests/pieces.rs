@@ -89,7 +89,62 @@ fn what_is_missing_or_wrong_is_told_by_number() {
     folder.put("c.plan", b"{}");
     folder.run("work c.plan --piece 0 -o pieces").expect(1).says("is no plan");
     folder.run("plan - -o a.plan --pieces 2").expect(2).says("a scene with a name");
-    folder.run("plan balls.ray -o a.plan --pieces 2 --layers all").expect(2).says("--layers");
+    folder.run("plan balls.ray -o a.plan --pieces 2 --overlay bounds").expect(2).says("--overlay");
+    // A scheduler's tasks have numbers of their own: where tiles do not suffice, pieces are empty.
+    folder.run(&format!("plan balls.ray -o d.plan --pieces 900 {OPTIONS}")).expect(0);
+    assert_eq!(count(&folder, "d.plan"), 900);
+    folder.run("work d.plan --piece 899 -o many").expect(0).says("piece 899 is empty");
+}
+
+#[test]
+fn layers_are_split_and_joined_like_the_picture() {
+    let folder = Folder::new();
+    let layers = "--layers depth,normal,shadow,reflected,boxtests --crop 20,30,101,77";
+    for picture in ["whole.exr", "whole.png"] {
+        folder.run(&format!("render balls.ray {picture} {OPTIONS} {layers}")).expect(0);
+    }
+    folder.run(&format!("plan balls.ray -o a.plan --pieces 5 {OPTIONS} {layers}")).expect(0);
+    // Nothing of theirs is written before the merge.
+    assert!(!folder.names().iter().any(|name| name.contains("depth.png") && !name.starts_with("whole")));
+    let plan = plan(&folder, "a.plan");
+    let parts = |n: usize| plan["pieces"][n]["parts"][0].clone();
+    // 20 bands of 4 rows come after the tiles, and some piece has both.
+    let tiles = plan["tiles"].as_u64().expect("a number") - 20;
+    let both = |n: &usize| {
+        let (first, count) = (parts(*n)["first"].as_u64(), parts(*n)["count"].as_u64());
+        first.zip(count).is_some_and(|(first, count)| first < tiles && first + count > tiles)
+    };
+    let both = (0..5).find(both).expect("a piece with tiles and bands");
+    (0..5).for_each(|n| drop(folder.run(&format!("work a.plan --piece {n} -o pieces")).expect(0)));
+    for picture in ["merged.exr", "merged.png"] {
+        folder.run(&format!("merge a.plan pieces -o {picture}")).expect(0);
+    }
+    let mut made = folder.names();
+    made.retain(|name| name.starts_with("merged."));
+    assert_eq!(made.len(), 7, "{made:?}");
+    for name in &made {
+        assert!(folder.get(name) == folder.get(&name.replace("merged.", "whole.")), "{name}");
+        std::fs::remove_file(folder.path(name)).expect("a picture");
+    }
+    // A band that is damaged is found, and only its piece is made again.
+    let path = folder.path("pieces/piece-00004.tiles");
+    let mut bytes = std::fs::read(&path).expect("a piece");
+    let end = bytes.len() - 9;
+    bytes[end] ^= 1;
+    std::fs::write(&path, &bytes).expect("a piece");
+    folder.run("merge a.plan pieces -o merged.exr").expect(1).says("missing or not whole: 4");
+    folder.run(&format!("work a.plan --piece {both} -o pieces")).expect(0).says("is there already");
+    folder.run("work a.plan --piece 4 -o pieces --progress json").expect(0).says("\"kind\":\"piece\"");
+    folder.run("merge a.plan pieces -o merged.exr").expect(0);
+    assert!(folder.get("merged.exr") == folder.get("whole.exr"));
+    // A piece of other layers belongs to another picture.
+    let fewer = layers.replace(",boxtests", "");
+    folder.run(&format!("plan balls.ray -o b.plan --pieces 5 {OPTIONS} {fewer}")).expect(0);
+    let refused = folder.run("merge b.plan pieces -o other.exr").expect(1);
+    refused.says(
+        "layers: depth,normal,shadow,reflected,boxtests in the piece, depth,normal,shadow,reflected in the",
+    );
+    folder.run("merge a.plan pieces -o - --format png").expect(2).says("--layers on standard output needs");
 }
 
 #[test]
@@ -135,7 +190,7 @@ fn pieces_take_about_the_same_time() {
 fn animations_are_split_by_frames_and_tiles() {
     let folder = Folder::new();
     folder.put("turn.toml", b"[camera.turntable]\nframes = 12\n");
-    let options = "--animation turn.toml --frames 3-6 --size 100x75";
+    let options = "--animation turn.toml --frames 3-6 --size 100x75 --layers st,direct";
     folder.run(&format!("animate balls.ray {options} -o one.##.png")).expect(0);
     folder.run(&format!("plan balls.ray {options} -o a.plan --pieces 6")).expect(0);
     assert_eq!(count(&folder, "a.plan"), 6);
@@ -148,6 +203,10 @@ fn animations_are_split_by_frames_and_tiles() {
         let (one, two) =
             (folder.get(&format!("one.{frame:02}.png")), folder.get(&format!("two.{frame:02}.png")));
         assert!(one == two, "frame {frame}");
+        for layer in ["st", "direct"] {
+            let [one, two] = ["one", "two"].map(|name| folder.get(&format!("{name}.{frame:02}.{layer}.png")));
+            assert!(one == two, "frame {frame}, {layer}");
+        }
     }
     folder.put("turn.toml", b"[camera.turntable]\nframes = 13\n");
     folder.run("work a.plan --piece 0 -o other").expect(1).says("animation differ");
@@ -233,29 +292,61 @@ fn program(name: &str) -> Command {
 }
 
 #[test]
-fn both_ways_of_opencue_make_every_piece() {
-    // By the variable of the environment.
+fn the_command_of_opencue_makes_every_piece() {
     let line = blocks("sh").into_iter().find(|block| block.contains("CUE_IFRAME")).expect("a recipe");
     let folder = planned();
+    let line = line.replace("/data", &folder.path("").display().to_string());
     for frame in 0..16 {
-        let ended = recipe(&folder, &format!("export CUE_IFRAME={frame} CUE_FRAME={frame:04}\n{line}"));
+        // Frames begin in a folder of their own.
+        let ended = recipe(&folder, &format!("cd /; export CUE_IFRAME={frame} CUE_FRAME={frame:04}\n{line}"));
         assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
     }
     merged(&folder);
-    // By the outline: a list of words, in which `#IFRAME#` stands for the frame, and a range.
-    let page = page();
-    let outline = page.split("Shell(\"work\", command=").nth(1).expect("an outline");
-    let (command, rest) = outline.split_once("], ").expect("a list");
-    let words: Vec<String> = serde_json::from_str(&format!("{command}]")).expect("words");
-    let range = rest.strip_prefix("range=\"").and_then(|rest| rest.split('"').next()).expect("a range");
-    let (first, last) = range.split_once('-').expect("a range");
-    let folder = planned();
-    for frame in first.parse::<u32>().expect("a number")..=last.parse().expect("a number") {
-        let mut words = words.iter().map(|word| word.replace("#IFRAME#", &frame.to_string()));
-        let mut command = program(&words.next().expect("a program"));
-        assert!(command.args(words).current_dir(folder.path("")).output().expect("it runs").status.success());
+}
+
+/// A Python with pyoutline, RQD and the schemas of Kubernetes, where there is one: `DOTRAY_RECIPES` names it.
+fn recipes_python() -> Option<std::path::PathBuf> {
+    let own = || common::root().join("target/recipes/bin/python");
+    let python = std::env::var_os("DOTRAY_RECIPES").map_or_else(own, Into::into);
+    if !python.exists() {
+        println!("skipped, no {}", python.display());
+        return None;
     }
-    merged(&folder);
+    std::path::absolute(python).ok()
+}
+
+#[test]
+fn opencue_runs_both_of_its_recipes() {
+    let Some(python) = recipes_python() else { return };
+    let script = std::fs::canonicalize(common::root().join("crates/cli/tests/opencue.py")).expect("a script");
+    let page = std::fs::canonicalize(common::root().join("docs/machines.md")).expect("the page");
+    for way in ["outline", "command"] {
+        let folder = Folder::new();
+        let options = "--size 640x480 --aa grid=5";
+        folder.run(&format!("render balls.ray whole.png {options}")).expect(0);
+        folder.run(&format!("plan balls.ray -o room.plan --pieces 16 {options}")).expect(0);
+        let line = format!("{} {} {} {way}", python.display(), script.display(), page.display());
+        let ended = recipe(&folder, &line);
+        assert!(ended.status.success(), "{way}: {}", String::from_utf8_lossy(&ended.stderr));
+        merged(&folder);
+    }
+}
+
+#[test]
+fn the_job_is_what_kubernetes_takes() {
+    let Some(python) = recipes_python() else { return };
+    let yaml = blocks("yaml").pop().expect("a Job");
+    let folder = Folder::new();
+    let wrong =
+        [("completions: 16", "completions: many"), ("workingDir", "workDir"), ("Indexed", "Indexed\n  x: 1")];
+    let wrong = wrong.map(|(from, to)| yaml.replacen(from, to, 1));
+    for (text, taken) in [(&yaml, true)].into_iter().chain(wrong.iter().map(|text| (text, false))) {
+        folder.put("job.yaml", text.as_bytes());
+        let mut command = Command::new(python.with_file_name("kubernetes-validate"));
+        let ended =
+            command.args(["--strict", "job.yaml"]).current_dir(folder.path("")).output().expect("it runs");
+        assert_eq!(ended.status.success(), taken, "{text}\n{}", String::from_utf8_lossy(&ended.stdout));
+    }
 }
 
 fn has_parallel() -> bool {

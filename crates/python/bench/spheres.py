@@ -72,8 +72,10 @@ def with_ovito(count, threads, out, engine):
         renderer = TachyonRenderer(ambient_occlusion=False, antialiasing=False, shadows=True, direct_light=True)
     else:
         renderer = OSPRayRenderer(samples_per_pixel=1, refinement_iterations=1, denoising_enabled=False)
-        renderer.ambient_light_enabled = False
-    view.render_image(size=SIZE, filename=str(out), renderer=renderer)
+        renderer.ambient_light_enabled, renderer.direct_light_enabled = False, True
+        # A small sun, as bright as the others' lights.
+        renderer.direct_light_intensity, renderer.direct_light_angular_diameter = 5.0, 0.0
+    view.render_image(size=SIZE, filename=str(out), background=(0, 0, 0), renderer=renderer)
     return start
 
 

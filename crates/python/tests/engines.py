@@ -110,21 +110,25 @@ class Network:
         run("ip", "link", "set", "switch", "up")
         self.hosts = 1
 
-    def add_worker(self, dask):
-        """A host with a worker: its process, and the name of its cable."""
+    def add_host(self, stack, command):
+        """A host that runs a command, in which HOST stands for its address: its process, and the name of its cable."""
         self.hosts += 1
-        number, cable = self.hosts, f"cable{self.hosts}"
+        host, cable = f"10.77.0.{self.hosts}", f"cable{self.hosts}"
         inside = (
             "for i in $(seq 100); do ip link show eth0 >/dev/null 2>&1 && break; sleep 0.05; done; "
-            f"ip link set lo up; ip addr add 10.77.0.{number}/24 dev eth0; ip link set eth0 up; exec "
+            f"ip link set lo up; ip addr add {host}/24 dev eth0; ip link set eth0 up; exec "
         )
-        command = inside + " ".join(worker_command(dask.address, "--host", f"10.77.0.{number}"))
-        process = dask.enter_context(Process("unshare", "-n", "sh", "-c", command))
+        command = inside + " ".join(command).replace("HOST", host)
+        process = stack.enter_context(Process("unshare", "-n", "sh", "-c", command))
         time.sleep(0.3)
         run("ip", "link", "add", cable, "type", "veth", "peer", "name", "eth0", "netns", str(process.pid))
         run("ip", "link", "set", cable, "master", "switch")
         run("ip", "link", "set", cable, "up")
         return process, cable
+
+    def add_worker(self, dask):
+        """A host with one of Dask's workers."""
+        return self.add_host(dask, worker_command(dask.address, "--host", "HOST"))
 
     @staticmethod
     def pull(cable):

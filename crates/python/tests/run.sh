@@ -22,6 +22,10 @@ bin=$PWD/$venv/bin
 # MPI as a wheel; where it cannot be had, its test says that it is skipped.
 "$bin/pip" install -q --disable-pip-version-check mpi4py mpich || echo "python tests: no MPI to be had" >&2
 
+# So with Ray, and with pyright, which brings no Node of its own.
+"$bin/pip" install -q --disable-pip-version-check "ray>=2.40" || echo "python tests: no Ray to be had" >&2
+"$bin/pip" install -q --disable-pip-version-check pyright
+
 # The viewer for notebooks is a part of the wheel.
 [ -f crates/python/python/dotray/web/rayview_bg.wasm.gz ] || cargo xtask web
 
@@ -40,6 +44,12 @@ check() {
 
 check "$bin/mypy" --python-executable "$bin/python"
 check "$bin/python" -m mypy.stubtest dotray._dotray --concise --ignore-disjoint-bases
+
+if command -v node >/dev/null; then
+    check "$bin/pyright" --pythonpath "$bin/python"
+else
+    echo "python tests: pyright is skipped, no Node" >&2
+fi
 
 wheel=$(ls "$wheels"/*.whl)
 echo "wheel: $(basename "$wheel"), $(stat -c %s "$wheel") bytes"

@@ -161,11 +161,23 @@ pub fn develop_layers(
     film: &Mutex<LayerFilm>,
     observer: &dyn Observer,
 ) -> Result<(), RenderError> {
+    let missing = film.lock().unwrap_or_else(PoisonError::into_inner).missing();
+    develop_bands(world, options, film, &missing, observer)
+}
+
+/// Computes these bands of the layers, unless the observer cancels it; it is shown each.
+///
+/// # Errors
+/// Threads that cannot be started.
+pub fn develop_bands(
+    world: &World,
+    options: &Options,
+    film: &Mutex<LayerFilm>,
+    bands: &[Tile],
+    observer: &dyn Observer,
+) -> Result<(), RenderError> {
     let lock = || film.lock().unwrap_or_else(PoisonError::into_inner);
-    let (missing, wanted) = {
-        let film = lock();
-        (film.missing(), film.wanted.clone())
-    };
+    let wanted = lock().wanted.clone();
     let band = |tile: &Tile| {
         let pixels = layer_band(world, options, &wanted, tile);
         let progress = {
@@ -177,7 +189,7 @@ pub fn develop_layers(
         observer.tile_finished(&progress);
     };
     // One band a task, so that threads that have finished take over from others.
-    let run = || missing.par_iter().with_max_len(1).filter(|_| !observer.cancelled()).for_each(band);
+    let run = || bands.par_iter().with_max_len(1).filter(|_| !observer.cancelled()).for_each(band);
     on_threads(options.threads, run)
 }
 

@@ -193,7 +193,7 @@ pub(crate) fn numbers_a_pixel(wanted: &[Layer]) -> usize {
 }
 
 /// The options with which these layers are traced: where they lie on first hits alone, nothing else is.
-pub(crate) fn options_of(wanted: &[Layer], options: &Options) -> Options {
+pub fn options_of(wanted: &[Layer], options: &Options) -> Options {
     if wanted.iter().all(|layer| layer.is_geometric()) {
         Options { recursion: 0, shadows: Shadows::Off, light_samples: 1, ..options.clone() }
     } else {

@@ -79,7 +79,7 @@ pub use caster::Caster;
 pub use error::RenderError;
 pub use film::Film;
 pub use fingerprint::Fingerprint;
-pub use layer_film::{LayerFilm, develop_layers, layer_band, render_layers};
+pub use layer_film::{LayerFilm, develop_bands, develop_layers, layer_band, render_layers};
 pub use layers::{Layer, LayerPicture};
 pub use observer::{Observer, Progress, Silent};
 pub use options::{Antialias, Crop, Options, Order, PrepareOptions, Shadows, TextureFilter};

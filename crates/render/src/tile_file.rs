@@ -142,14 +142,9 @@ pub fn fingerprint_of(path: &Path) -> io::Result<Option<Fingerprint>> {
 ///
 /// # Errors
 /// What the system says.
-pub fn read_tiles(
-    path: &Path,
-    tiles: &[Tile],
-    channels: u32,
-    take: impl FnMut(TilePixels),
-) -> io::Result<Contents> {
+pub fn read_tiles(path: &Path, known: &[Known<'_>], take: impl FnMut(TilePixels)) -> io::Result<Contents> {
     let mut file = TileFile { file: File::open(path)?, head: Vec::new(), end: 0 };
-    file.read(&[Known { tiles, channels }], take)
+    file.read(known, take)
 }
 
 /// Reads what such a file holds from its bytes; see [`TileFile::read`].

@@ -1,13 +1,12 @@
 //! `dotray merge`: the pieces of a plan put together.
 
-use dotray::image::encode;
-use dotray::render::Film;
-use dotray::render::tile_file::read_tiles;
 use std::io;
 use std::path::PathBuf;
 
 use crate::exit::Failure;
 use crate::exit::say;
+use crate::extras::Encoded;
+use crate::extras::encoded;
 use crate::interrupt;
 use crate::many_args::MergeArgs;
 use crate::meaning::Place;
@@ -16,6 +15,7 @@ use crate::numbered::ranges;
 use crate::output;
 use crate::pieces::Part;
 use crate::pieces::PiecePlan;
+use crate::pieces::Sheet;
 use crate::plan::Plan;
 use crate::plan::plan;
 use crate::render_args::RenderArgs;
@@ -87,36 +87,37 @@ impl Merge<'_> {
     }
 
     fn frame(&mut self, frame: Option<u32>) -> Result<(), Failure> {
-        let mut film = Film::new(&self.plan.options)?;
+        let mut sheet = Sheet::new(&self.plan.options, &self.plan.layers)?;
         for (number, piece) in (0..).zip(&self.pieces.pieces) {
             for part in piece.parts.iter().filter(|part| part.frame == frame) {
-                if !self.read(number, part, &mut film) {
+                if !self.read(number, part, &mut sheet) {
                     self.missing.push(number);
                 }
             }
         }
-        if !film.is_complete() {
+        if !sheet.is_complete() {
             return Ok(());
         }
-        let path = match (frame, &self.plan.output) {
+        let output = match (frame, &self.plan.output) {
             (Some(frame), Place::File(path)) => Place::File(numbered(path, frame)?),
             (Some(_), Place::Standard) => {
                 return Err(Failure::Usage("frames need names, such as -o out.####.png".to_owned()));
             }
             (None, place) => place.clone(),
         };
-        output::write(&path, &encode(film.image(), self.plan.format, &self.plan.encode)?)?;
+        let plan = Plan { output, ..self.plan.clone() };
+        let Encoded { picture, layers } =
+            encoded(sheet.picture.image(), sheet.layers.into_pictures(), &plan)?;
+        output::write_all(&plan.output, &picture, &layers)?;
         self.written += 1;
         Ok(())
     }
 
-    /// Puts a part's tiles on the film; false, and told where it is not simply absent, if it is not whole.
-    fn read(&self, number: u32, part: &Part, film: &mut Film) -> bool {
+    /// Puts a part's tiles on the sheet; false, and told where it is not simply absent, if it is not whole.
+    fn read(&self, number: u32, part: &Part, sheet: &mut Sheet) -> bool {
         let path: PathBuf = self.pieces.path(&self.typed.folder, number, part);
-        let channels = if self.plan.options.transparent { 4 } else { 3 };
         let mut tiles = Vec::new();
-        let known = film.tiles().to_vec();
-        let contents = match read_tiles(&path, &known, channels, |pixels| tiles.push(pixels)) {
+        let contents = match sheet.read(&path, part, |pixels| tiles.push(pixels)) {
             Ok(contents) => contents,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return false,
             Err(error) => {
@@ -132,9 +133,7 @@ impl Merge<'_> {
             say(&format!("warning: `{}` belongs to another picture ({list})", path.display()));
             return false;
         }
-        let wanted = part.first..part.first + part.count;
-        let stored =
-            tiles.iter().filter(|pixels| wanted.contains(&pixels.tile.number) && film.store(pixels)).count();
+        let stored = tiles.iter().filter(|pixels| sheet.store(pixels)).count();
         if stored as u32 != part.count {
             say(&format!(
                 "warning: `{}` is damaged: {stored} of {} tiles are whole",

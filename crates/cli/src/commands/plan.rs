@@ -2,8 +2,14 @@
 
 use dotray::image::Format;
 use dotray::image::write_file;
+use dotray::render::Antialias;
+use dotray::render::LayerFilm;
+use dotray::render::Options;
 use dotray::render::Picture;
 use dotray::render::Silent;
+use dotray::render::Tile;
+use dotray::render::World;
+use dotray::render::layers::options_of;
 use std::time::Instant;
 
 use crate::exit::Failure;
@@ -57,11 +63,10 @@ pub fn run(typed: &PlanArgs, color: When) -> Result<(), Failure> {
         None => (Animation::default(), None),
     };
     let messages = Messages::new(color, plan.quiet);
-    let mut stage = Stage::new(&plan, &render, messages, animation)?;
-    let mut fingerprint = stage.fingerprint()?;
-    if let Some(text) = &text {
-        fingerprint = fingerprint.with_hash_of("animation", text.as_bytes());
-    }
+    // They are files of the merge; nothing is written beside the plan.
+    let bare = Plan { layers: Vec::new(), ..plan.clone() };
+    let mut stage = Stage::new(&bare, &render, messages, animation)?;
+    let fingerprint = stage.fingerprint(&plan.layers, text.as_deref())?;
     let frames: Vec<Option<u32>> = match typed.frames {
         Some(range) => (range.first..=range.last).map(Some).collect(),
         None => vec![None],
@@ -111,7 +116,6 @@ fn said(made: &PiecePlan, seconds: f64) -> String {
 /// Refuses what pieces cannot have.
 fn check(plan: &Plan) -> Result<(), Failure> {
     let refused = [
-        (!plan.layers.is_empty(), "--layers"),
         (plan.overlay.is_some(), "--overlay"),
         (matches!(plan.background, Some(Background::Image(_))), "--background image:FILE"),
         (plan.long.checkpoint.is_some(), "--checkpoint"),
@@ -143,25 +147,56 @@ fn looks(stage: &mut Stage<'_>, plan: &Plan, frames: &[Option<u32>]) -> Result<L
         interrupt::check()?;
         let frame = frames.get(place).copied().flatten();
         let set = stage.set(frame.unwrap_or(0))?;
-        let picture = Picture::new(set.world, &plan.options)?;
-        let start = Instant::now();
-        let mut costs = Vec::with_capacity(picture.tiles().len());
-        let (mut looked, mut pixels) = (0, 0);
-        for tile in picture.tiles() {
-            let Some(look) = picture.preview(tile, STEP, &Silent) else {
-                return interrupt::check().map(|()| looks);
-            };
-            let counts = &look.counts;
-            // A ray by itself costs about as much as some tests of boxes, a shape's test as much as a few.
-            let cost =
-                20.0 * counts.rays() as f64 + counts.box_tests as f64 + 4.0 * counts.shape_tests as f64;
-            costs.push(cost * tile.pixels() as f64 / counts.eye_rays.max(1) as f64);
-            looked += counts.eye_rays;
-            pixels += tile.pixels();
+        let look = look(set.world, &plan.options)?;
+        let samples = storage::samples_a_pixel(&plan.options);
+        let mut costs: Vec<f64> = look.tiles.iter().map(|(_, cost)| cost * samples).collect();
+        let mut seconds = look.seconds * samples;
+        if !plan.layers.is_empty() {
+            let options = Options { antialias: Antialias::None, ..options_of(&plan.layers, &plan.options) };
+            let look = self::look(set.world, &options)?;
+            let layers = LayerFilm::new(&plan.options, &plan.layers)?;
+            costs.extend(layers.bands().iter().map(|band| of_band(band, &look.tiles)));
+            seconds += look.seconds;
         }
-        let seconds = start.elapsed().as_secs_f64() / looked.max(1) as f64 * pixels as f64;
-        looks.seconds += seconds * storage::samples_a_pixel(&plan.options) / places.len() as f64;
+        looks.seconds += seconds / places.len() as f64;
         looks.costs.push((place, costs));
     }
     Ok(looks)
+}
+
+/// What a look at a picture found, one ray a pixel.
+struct Look {
+    /// The tiles, each with its cost.
+    tiles: Vec<(Tile, f64)>,
+    /// About the seconds that all of them take on one core.
+    seconds: f64,
+}
+
+/// Looks at every tile of a picture.
+fn look(world: &World, options: &Options) -> Result<Look, Failure> {
+    let picture = Picture::new(world, options)?;
+    let start = Instant::now();
+    let mut tiles = Vec::with_capacity(picture.tiles().len());
+    let (mut looked, mut pixels) = (0, 0);
+    for tile in picture.tiles() {
+        let look = picture.preview(tile, STEP, &Silent);
+        // Nobody is asked whether to go on in the midst of a look.
+        let counts = look.map(|look| look.counts).unwrap_or_default();
+        // A ray by itself costs about as much as some tests of boxes, a shape's test as much as a few.
+        let cost = 20.0 * counts.rays() as f64 + counts.box_tests as f64 + 4.0 * counts.shape_tests as f64;
+        tiles.push((*tile, cost * tile.pixels() as f64 / counts.eye_rays.max(1) as f64));
+        looked += counts.eye_rays;
+        pixels += tile.pixels();
+    }
+    let seconds = start.elapsed().as_secs_f64() / looked.max(1) as f64 * pixels as f64;
+    Ok(Look { tiles, seconds })
+}
+
+/// The cost of a band: of each tile the share that lies in it.
+fn of_band(band: &Tile, tiles: &[(Tile, f64)]) -> f64 {
+    let share = |(tile, cost): &(Tile, f64)| {
+        let rows = (tile.y + tile.height).min(band.y + band.height).saturating_sub(tile.y.max(band.y));
+        cost * f64::from(rows) / f64::from(tile.height.max(1))
+    };
+    tiles.iter().map(share).sum()
 }

@@ -25,6 +25,7 @@ use crate::input::Understood;
 use crate::input::understand;
 use crate::interrupt;
 use crate::keep::Keep;
+use crate::layers::with_layers;
 use crate::limits;
 use crate::long_args::ProgressName;
 use crate::making::Made;
@@ -68,12 +69,11 @@ fn ready(typed: &RenderArgs, plan: &Plan, messages: Messages) -> Result<Ready, F
         messages.print(&faults, &sources);
         Failure::Reported
     })?;
-    let fingerprint = plan.long.checkpoint.is_some().then(|| {
-        let fingerprint = Fingerprint::of(&resolved, &textures, &plan.options);
-        // A checkpoint of other layers has bands of other numbers.
-        let names: Vec<&str> = plan.layers.iter().map(|layer| layer.name()).collect();
-        if names.is_empty() { fingerprint } else { fingerprint.with("layers", &names.join(",")) }
-    });
+    let fingerprint = plan
+        .long
+        .checkpoint
+        .is_some()
+        .then(|| with_layers(Fingerprint::of(&resolved, &textures, &plan.options), &plan.layers));
     // Nothing can be said of a place in the text any more, and the tree may want the memory.
     drop(sources);
     let world = World::build(resolved, textures, &plan.prepare).map_err(|faults| {

@@ -1,14 +1,16 @@
 //! `dotray work`: one piece of a plan.
 
 use dotray::image::write_file;
-use dotray::render::Film;
+use dotray::render::Layer;
+use dotray::render::LayerFilm;
 use dotray::render::Observer;
 use dotray::render::Picture;
+use dotray::render::Progress;
 use dotray::render::Tile;
 use dotray::render::TilePixels;
+use dotray::render::develop_bands;
 use dotray::render::develop_part;
 use dotray::render::tile_file::head_bytes;
-use dotray::render::tile_file::read_tiles;
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -26,6 +28,7 @@ use crate::messages::Messages;
 use crate::pieces::Part;
 use crate::pieces::Piece;
 use crate::pieces::PiecePlan;
+use crate::pieces::Sheet;
 use crate::plan::Plan;
 use crate::plan::plan;
 use crate::progress::Watcher;
@@ -55,16 +58,18 @@ pub fn run(typed: &WorkArgs, color: When) -> Result<(), Failure> {
     let threads: Vec<String> =
         typed.threads.map(|threads| format!("--threads={threads}")).into_iter().collect();
     let render = pieces.render_args(&threads)?;
-    let plan = plan(&render)?;
-    let film = Film::new(&plan.options)?;
-    if film.tiles().len() as u32 != pieces.tiles {
-        let tiles = film.tiles().len();
+    let mut plan = plan(&render)?;
+    // They are files of the merge; nothing is written beside the pieces.
+    let layers = std::mem::take(&mut plan.layers);
+    let sheet = Sheet::new(&plan.options, &layers)?;
+    if sheet.count() != pieces.tiles {
         return Err(Failure::Failed(format!(
-            "the plan counts {} tiles; the picture has {tiles}",
-            pieces.tiles
+            "the plan counts {} tiles; the picture and its layers have {}",
+            pieces.tiles,
+            sheet.count()
         )));
     }
-    let missing = missing_parts(&pieces, typed.piece, piece, folder, film.tiles(), &plan);
+    let missing = missing_parts(&pieces, typed.piece, piece, folder, &sheet);
     if missing.is_empty() {
         say(&format!("piece {} is there already", typed.piece));
         return Ok(());
@@ -72,20 +77,10 @@ pub fn run(typed: &WorkArgs, color: When) -> Result<(), Failure> {
     let animation = pieces.animation.as_ref().map(|path| Animation::read(path.as_ref())).transpose()?;
     let (animation, text) = animation.map_or((Animation::default(), None), |(read, text)| (read, Some(text)));
     let mut stage = Stage::new(&plan, &render, Messages::new(color, true), animation)?;
-    let mut fingerprint = stage.fingerprint()?;
-    if let Some(text) = &text {
-        fingerprint = fingerprint.with_hash_of("animation", text.as_bytes());
-    }
-    let differences = pieces.fingerprint(None).differences(&fingerprint, "in the plan", "here");
-    if !differences.is_empty() {
-        let list = differences.join("; ");
-        return Err(Failure::Failed(format!(
-            "the plan `{}` is of another picture ({list}); plan anew",
-            typed.plan.display()
-        )));
-    }
+    pieces.check(&typed.plan, &stage.fingerprint(&layers, text.as_deref())?)?;
+    let work = Work { plan: &plan, layers: &layers, pieces: &pieces, typed };
     for part in missing {
-        compute(&mut stage, &plan, &pieces, part, typed)?;
+        work.compute(&mut stage, part)?;
     }
     Ok(())
 }
@@ -96,18 +91,12 @@ fn missing_parts<'a>(
     number: u32,
     piece: &'a Piece,
     folder: &Path,
-    tiles: &[Tile],
-    plan: &Plan,
+    sheet: &Sheet,
 ) -> Vec<&'a Part> {
     let is_missing = |part: &&Part| {
-        let wanted = |tile: u32| tile >= part.first && tile - part.first < part.count;
         let mut there = vec![false; part.count as usize];
-        let channels = if plan.options.transparent { 4 } else { 3 };
-        let path = pieces.path(folder, number, part);
-        let contents = read_tiles(&path, tiles, channels, |pixels| {
-            if wanted(pixels.tile.number)
-                && let Some(there) = there.get_mut((pixels.tile.number - part.first) as usize)
-            {
+        let contents = sheet.read(&pieces.path(folder, number, part), part, |pixels| {
+            if let Some(there) = there.get_mut((pixels.tile.number - part.first) as usize) {
                 *there = true;
             }
         });
@@ -118,54 +107,74 @@ fn missing_parts<'a>(
     piece.parts.iter().filter(is_missing).collect()
 }
 
-fn compute(
-    stage: &mut Stage<'_>,
-    plan: &Plan,
-    pieces: &PiecePlan,
-    part: &Part,
-    typed: &WorkArgs,
-) -> Result<(), Failure> {
-    if let Some(frame) = part.frame {
-        events::emit("frame", json!({ "frame": frame, "frames": 1 }));
+/// What all parts of a piece have in common.
+struct Work<'a> {
+    plan: &'a Plan,
+    layers: &'a [Layer],
+    pieces: &'a PiecePlan,
+    typed: &'a WorkArgs,
+}
+
+impl Work<'_> {
+    /// Computes a part and writes its file.
+    fn compute(&self, stage: &mut Stage<'_>, part: &Part) -> Result<(), Failure> {
+        let Self { plan, layers, pieces, typed } = self;
+        if let Some(frame) = part.frame {
+            events::emit("frame", json!({ "frame": frame, "frames": 1 }));
+        }
+        let set = stage.set(part.frame.unwrap_or(0))?;
+        let picture = Picture::new(set.world, &plan.options)?;
+        let sheet = Sheet { picture: picture.film()?, layers: LayerFilm::new(&plan.options, layers)? };
+        let (tiles, bands) = sheet.of_part(part);
+        let pixels = |tiles: &[Tile]| tiles.iter().map(Tile::pixels).sum::<u64>();
+        let all = pixels(&tiles) + pixels(&bands);
+        let watcher = Watcher::new(all, typed.progress, false);
+        let Sheet { picture: film, layers } = sheet;
+        let (film, layers) = (Mutex::new(film), Mutex::new(layers));
+        let of_tiles = OfPart { watcher: &watcher, before: 0, all };
+        let mut developed = Ok(());
+        if !tiles.is_empty() {
+            developed = develop_part(&picture, &film, &tiles, &of_tiles);
+        }
+        if developed.is_ok() && !bands.is_empty() {
+            let of_bands = OfPart { before: pixels(&tiles), ..of_tiles };
+            developed = develop_bands(set.world, &plan.options, &layers, &bands, &of_bands);
+        }
+        watcher.finish();
+        developed?;
+        interrupt::check()?;
+        let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let layers = layers.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut bytes = head_bytes(&pieces.fingerprint(part.frame));
+        let tiles = tiles.iter().filter_map(|tile| film.pixels(tile));
+        let bands = bands.iter().filter_map(|band| layers.pixels(band));
+        tiles.chain(bands).for_each(|pixels| bytes.extend(pixels.to_bytes()));
+        let path = pieces.path(&typed.output, typed.piece, part);
+        // Somebody may have taken the folder away meanwhile; where it cannot be made, the write says so.
+        let _ = fs::create_dir_all(&typed.output);
+        write_file(&path, &bytes).map_err(|error| Failure::Failed(error.to_string()))?;
+        events::emit("saved", json!({ "kind": "piece", "file": path.display().to_string() }));
+        Ok(())
     }
-    let set = stage.set(part.frame.unwrap_or(0))?;
-    let picture = Picture::new(set.world, &plan.options)?;
-    let film = picture.film()?;
-    let tiles: Vec<Tile> =
-        film.tiles().iter().skip(part.first as usize).take(part.count as usize).copied().collect();
-    let pixels: u64 = tiles.iter().map(Tile::pixels).sum();
-    let watcher = Watcher::new(pixels, typed.progress, false);
-    let watcher = OfPart { watcher, pixels };
-    let film = Mutex::new(film);
-    let developed = develop_part(&picture, &film, &tiles, &watcher);
-    watcher.watcher.finish();
-    developed?;
-    interrupt::check()?;
-    let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let mut bytes = head_bytes(&pieces.fingerprint(part.frame));
-    tiles.iter().filter_map(|tile| film.pixels(tile)).for_each(|pixels| bytes.extend(pixels.to_bytes()));
-    let path = pieces.path(&typed.output, typed.piece, part);
-    // Somebody may have taken the folder away meanwhile; where it cannot be made, the write says so.
-    let _ = fs::create_dir_all(&typed.output);
-    write_file(&path, &bytes).map_err(|error| Failure::Failed(error.to_string()))?;
-    events::emit("saved", json!({ "kind": "piece", "file": path.display().to_string() }));
-    Ok(())
 }
 
 /// Watches a part as if it were a picture.
-struct OfPart {
-    watcher: Watcher,
-    pixels: u64,
+#[derive(Clone, Copy)]
+struct OfPart<'a> {
+    watcher: &'a Watcher,
+    /// Pixels that were finished before.
+    before: u64,
+    all: u64,
 }
 
-impl Observer for OfPart {
+impl Observer for OfPart<'_> {
     fn tile_traced(&self, pixels: &TilePixels) {
         tracing::trace!(number = pixels.tile.number, rays = pixels.counts.rays(), "a tile is finished");
     }
 
-    fn tile_finished(&self, progress: &dotray::render::Progress) {
-        let progress = dotray::render::Progress { total_pixels: self.pixels, ..*progress };
-        self.watcher.tile_finished(&progress);
+    fn tile_finished(&self, progress: &Progress) {
+        let finished_pixels = self.before + progress.finished_pixels;
+        self.watcher.tile_finished(&Progress { finished_pixels, total_pixels: self.all });
     }
 
     fn cancelled(&self) -> bool {

@@ -12,8 +12,8 @@ from typing import Any
 try:
     import anywidget
     import traitlets
-except ImportError as missing:
-    raise ImportError("dotray.jupyter needs anywidget: pip install anywidget") from missing
+except ImportError as _missing:
+    raise ImportError("dotray.jupyter needs anywidget: pip install anywidget") from _missing
 
 from dotray._scene import Scene
 from dotray._tree import textures
@@ -30,7 +30,7 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
     _esm = (_WEB / "widget.js").read_text(encoding="utf-8")
 
     #: The cell's height in points of the screen.
-    height = traitlets.Int(480).tag(sync=True)
+    height: traitlets.Int[int, int] = traitlets.Int(480).tag(sync=True)
 
     def __init__(self, files: list[tuple[str, bytes]], height: int) -> None:
         super().__init__(height=height)
