@@ -71,7 +71,8 @@ impl Ways {
         {
             self.facing[count] = i as u32;
             let reaches = distance > 0.0 && (distance < f64::INFINITY || parallel);
-            count += usize::from(reaches && !(cosine <= 0.0));
+            let turned_away = cosine <= 0.0;
+            count += usize::from(reaches && !turned_away);
         }
         self.facing.truncate(count);
     }
@@ -121,8 +122,8 @@ impl Ways {
             let store = |list: &mut [f64], lanes: f64x8<S>| {
                 list[first..first + LANES].copy_from_slice(&lanes.to_array());
             };
-            for axis in 0..3 {
-                store(&mut self.towards[axis], towards[axis]);
+            for (list, lanes) in self.towards.iter_mut().zip(towards) {
+                store(list, lanes);
             }
             store(&mut self.distances, distance);
             store(&mut self.fading, fading);
