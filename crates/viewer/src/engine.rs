@@ -18,6 +18,7 @@ use dotray_accel::simd::level;
 use dotray_geometry::Ray;
 use dotray_geometry::Vec3;
 use dotray_image::Image;
+use dotray_render::Crop;
 use dotray_render::Options;
 use dotray_render::Picture;
 use dotray_render::PrepareOptions;
@@ -345,4 +346,12 @@ fn camera_of(request: &Request) -> Camera {
 fn nearest(world: &World, ray: Ray) -> Option<dotray_render::Nearest> {
     let queries = Queries { rays: &[ray], t_min: &[world.ray_eps()], t_max: dotray_accel::ENDLESS };
     world.caster().nearest(&queries, false).first().copied().flatten()
+}
+
+/// The whole pixels of a region; `None` where that is nothing.
+pub fn whole_pixels([left, top, right, bottom]: [f64; 4], width: u32, height: u32) -> Option<Crop> {
+    let at = |part: f64, size: u32| (part.clamp(0.0, 1.0) * f64::from(size)).round() as u32;
+    let (x, y) = (at(left, width), at(top, height));
+    let (right, bottom) = (at(right, width), at(bottom, height));
+    (right > x && bottom > y).then(|| Crop { x, y, width: right - x, height: bottom - y })
 }

@@ -8,6 +8,17 @@ use dotray_scene::walk::Walk;
 use std::collections::HashSet;
 use std::ops::Range;
 
+/// What is selected.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// The shapes.
+    pub shapes: Range<u32>,
+    /// What it is called.
+    pub name: String,
+    /// The box around it.
+    pub bounds: dotray_geometry::Aabb,
+}
+
 /// What a node stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NodeKind {

@@ -7,12 +7,14 @@ use crate::engine::Command;
 use crate::engine::Reply;
 use crate::engine::Request;
 use crate::engine::Seen;
+use crate::engine::whole_pixels;
 use crate::gpu::Raster;
 use crate::hidden::Hidden;
 use crate::link::Link;
 use crate::link::News;
 use crate::link::Source;
 use crate::navigate::Navigator;
+use crate::outline::Selection;
 use crate::rays;
 use crate::rays::RayRow;
 use dotray_accel::Kind;
@@ -20,7 +22,6 @@ use dotray_geometry::Vec3;
 use dotray_image::EncodeOptions;
 use dotray_image::Format;
 use dotray_image::Image;
-use dotray_render::Crop;
 use dotray_render::Options;
 use dotray_render::PrepareOptions;
 use dotray_scene::Resolved;
@@ -55,17 +56,6 @@ pub struct Traced {
     pub image: Option<Arc<Image>>,
     /// The pixels on the screen; `None` before the first have come.
     pub texture: Option<egui::TextureHandle>,
-}
-
-/// What is selected.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Selection {
-    /// The shapes.
-    pub shapes: Range<u32>,
-    /// What it is called.
-    pub name: String,
-    /// The box around it.
-    pub bounds: dotray_geometry::Aabb,
 }
 
 /// The rays of a pixel.
@@ -347,7 +337,7 @@ impl State {
         let [width, height] = self.size;
         let mut options = Options { width, height, crop: None, ..self.options.clone() };
         if with_region {
-            options.crop = self.region.and_then(|region| crop(region, width, height));
+            options.crop = self.region.and_then(|region| whole_pixels(region, width, height));
         }
         Some(Request { serial: self.serial, camera: self.camera()?, options })
     }
@@ -502,12 +492,4 @@ impl State {
     pub fn fly(&mut self, by: [f64; 3]) {
         self.navigate(|navigator| navigator.fly(Vec3::from_array(by)));
     }
-}
-
-/// The whole pixels of a region; `None` where that is nothing.
-fn crop([left, top, right, bottom]: [f64; 4], width: u32, height: u32) -> Option<Crop> {
-    let at = |part: f64, size: u32| (part.clamp(0.0, 1.0) * f64::from(size)).round() as u32;
-    let (x, y) = (at(left, width), at(top, height));
-    let (right, bottom) = (at(right, width), at(bottom, height));
-    (right > x && bottom > y).then(|| Crop { x, y, width: right - x, height: bottom - y })
 }
