@@ -217,7 +217,8 @@ pub struct ShadowBuffers {
 
 /// The occlusion of many shadow rays.
 ///
-/// Tried and dropped: showing each packet first the leaf that blocked a ray last. Pictures took from 3 % less to 5 % more.
+/// Tried and dropped: showing each packet first the leaf that blocked a ray last. Pictures took from 3 % less to 5 %
+/// more.
 pub struct ShadowBatch<'a> {
     shapes: &'a Shapes,
     queries: Queries<'a>,
