@@ -18,7 +18,7 @@ HERE = Path(__file__).parent
 SCRIPT = str(HERE / "more_engines.py")
 
 
-def run(command, timeout=300):
+def run(command, timeout=600):
     done = subprocess.run(
         command,
         capture_output=True,
