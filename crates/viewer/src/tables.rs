@@ -45,7 +45,8 @@ fn texel(v: Vec3, w: f64) -> [f32; 4] {
 }
 
 /// The materials, each of [`MATERIAL_TEXELS`] texels, and behind them the clauses of their 3-D textures and bumps, each
-/// of [`CLAUSE_TEXELS`]: its kind, scale, octaves and height; a colour, and whether another one follows; the other colour.
+/// of [`CLAUSE_TEXELS`]: its kind, scale, octaves and height; a colour, and whether another one follows; the other
+/// colour.
 pub fn materials(materials: &[ResolvedMaterial]) -> Vec<[f32; 4]> {
     let mut clauses = Vec::new();
     let first = MATERIAL_TEXELS * materials.len();

@@ -54,13 +54,6 @@ impl Pipelines {
             immediate_size: 0,
         });
         let make = |kind: &Kind<'_>| pipeline(device, &shader, &all, kind);
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            address_mode_u: wgpu::AddressMode::Repeat,
-            address_mode_v: wgpu::AddressMode::Repeat,
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
         let ball = Kind {
             vertex: "ball_vertex",
             fragment: "ball_fragment",
@@ -114,9 +107,20 @@ impl Pipelines {
             lines: make(&line),
             faint_lines: make(&faint),
             layout,
-            sampler,
+            sampler: repeating(device),
         }
     }
+}
+
+/// How textures are read: over and over, and smoothly.
+fn repeating(device: &wgpu::Device) -> wgpu::Sampler {
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    })
 }
 
 fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
