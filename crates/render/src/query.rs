@@ -78,7 +78,7 @@ impl<'a> NearestBatch<'a> {
         Self { shapes, queries, left: &[], buffers }
     }
 
-    /// The same, for rays that each leave a shape which they cannot meet again ([`crate::leaving`]).
+    /// The same, for rays that each leave a shape which they cannot meet again (`leaving.rs`).
     pub fn leaving(self, left: &'a [u32]) -> Self {
         Self { left, ..self }
     }
@@ -242,7 +242,7 @@ impl<'a> ShadowBatch<'a> {
         Self { shapes, queries, left: &[], see_through, buffers }
     }
 
-    /// The same, for rays that each leave a shape which they cannot meet again ([`crate::leaving`]).
+    /// The same, for rays that each leave a shape which they cannot meet again (`leaving.rs`).
     pub fn leaving(self, left: &'a [u32]) -> Self {
         Self { left, ..self }
     }
