@@ -21,6 +21,7 @@ use crate::octree::Octree;
 use crate::query::Queries;
 use crate::simd::Level;
 use crate::simd::dispatch;
+use crate::simd::level;
 use crate::stats::Cell;
 use crate::stats::Defect;
 use crate::stats::Stats;
@@ -249,7 +250,8 @@ fn build_bvh(boxes: &impl Boxes, frame: Frame, settings: &Settings) -> (Tree, Ve
         .map(|item| Reference::new(frame.narrow(&boxes.bounds(item)), item))
         .collect();
     let mut nodes = Vec::new();
-    let root: Child = Builder { quality: settings.quality }.build(&mut references, 0, &mut nodes);
+    let root: Child =
+        Builder { quality: settings.quality, level: level() }.build(&mut references, 0, &mut nodes);
     let order = references.par_iter().with_min_len(1 << 12).map(Reference::number).collect();
     drop(references);
     (Tree::new(frame, nodes, root), order)

@@ -16,12 +16,14 @@ use crate::bvh::Tree;
 use crate::bvh::build::LINK;
 use crate::bvh::partition::Extent;
 use crate::bvh::partition::Reference;
+use crate::bvh::partition::Span;
 use crate::bvh::wide::WideNode;
 use crate::input::Boxes;
 use crate::input::GroupEvent;
 use crate::input::MAX_ITEMS;
 use crate::input::Quality;
 use crate::narrow::Frame;
+use crate::simd::level;
 
 /// The forest while it grows: one small tree a group.
 struct Forest<'a, B> {
@@ -103,10 +105,10 @@ impl<B: Boxes> Forest<'_, B> {
     /// Builds the tree of the children from `start` on and takes them off the list.
     fn top(&mut self, start: usize) -> Option<(Child, Extent)> {
         let children = self.references.get_mut(start..).filter(|children| !children.is_empty())?;
-        let mut bounds = Extent::EMPTY;
-        children.iter().for_each(|child| bounds.add(child));
+        let bounds = Span::of(level(), children).bounds;
         let (first, old_nodes) = (self.order.len() as u32, self.nodes.len());
-        let child = Builder { quality: Quality::Fast }.build(children, first, &mut self.nodes);
+        let child =
+            Builder { quality: Quality::Fast, level: level() }.build(children, first, &mut self.nodes);
         // The builder has counted links as it counts items, but only items take positions.
         let mut places = Vec::with_capacity(children.len());
         for number in children.iter().map(Reference::number) {

@@ -3,7 +3,8 @@
 pub use fearless_simd::prelude;
 pub use fearless_simd::{Fallback, Level, Simd, dispatch};
 pub use fearless_simd::{
-    f32x4, f32x8, f32x16, f64x2, f64x4, f64x8, i32x8, mask32x8, mask32x16, mask64x4, mask64x8, u32x8,
+    f32x4, f32x8, f32x16, f64x2, f64x4, f64x8, i32x4, i32x8, mask32x8, mask32x16, mask64x4, mask64x8, u32x4,
+    u32x8,
 };
 
 use std::sync::OnceLock;

@@ -24,6 +24,7 @@ use crate::bvh::wide::MAX_LEAF;
 use crate::bvh::wide::WIDTH;
 use crate::bvh::wide::WideNode;
 use crate::input::Quality;
+use crate::simd::Level;
 use rayon::prelude::*;
 
 /// So many levels may be cut unevenly. Eight millions of items in even cuts need seven.
@@ -51,6 +52,8 @@ pub const LINK: u32 = 1 << 31;
 pub struct Builder {
     /// Building time against tracing time.
     pub quality: Quality,
+    /// The instructions to use: the tree is the same with all.
+    pub level: Level,
 }
 
 /// A piece of a node's range.
@@ -59,6 +62,8 @@ struct Piece {
     start: usize,
     end: usize,
     span: Span,
+    /// Half the surface of its box.
+    area: f32,
     /// How many references it holds: as many as members, unless those are clusters.
     weight: usize,
     /// Whether all of it may stand in one leaf (or is one link); of clusters, whether they are parted no further.
@@ -83,7 +88,7 @@ impl Builder {
         if let Some(child) = self.leaf(references, first) {
             return child;
         }
-        let span = Span::of(references);
+        let span = Span::of(self.level, references);
         self.grow(references, first, span, 0, nodes)
     }
 
@@ -165,8 +170,8 @@ impl Builder {
         if !CLUSTERED.contains(&references.len()) || depth > FREE_DEPTH / 2 || self.quality == Quality::Best {
             return None;
         }
-        let Clusters { sorted, mut clusters } = Clusters::of(references, &span)?;
-        let span = Span::of(&clusters);
+        let Clusters { sorted, mut clusters } = Clusters::of(self.level, references, &span)?;
+        let span = Span::of(self.level, &clusters);
         Some(self.grow_clusters(&mut clusters, &sorted, references, first, span, depth, nodes))
     }
 
@@ -196,7 +201,7 @@ impl Builder {
                     here[end..end + part.len()].copy_from_slice(part);
                     end += part.len();
                 }
-                let piece = Piece { span: Span::of(here), ..*piece };
+                let piece = Piece { span: Span::of(self.level, here), ..*piece };
                 self.child(here, place, &piece, depth, nodes)
             } else {
                 self.grow_clusters(members, sorted, here, place, piece.span, depth + 1, nodes)
@@ -232,7 +237,8 @@ impl Builder {
         fits: impl Fn(&[T]) -> bool,
     ) -> ([Piece; WIDTH], usize) {
         let weight = weight(members);
-        let whole = Piece { start: 0, end: members.len(), span, weight, fits: false, closed: false };
+        let area = span.bounds.half_area();
+        let whole = Piece { start: 0, end: members.len(), span, area, weight, fits: false, closed: false };
         let mut pieces = [whole; WIDTH];
         let mut count = 1;
         while count < WIDTH {
@@ -260,27 +266,28 @@ impl Builder {
         fits: impl Fn(&[T]) -> bool,
     ) -> Option<(Piece, Piece)> {
         let range = &mut members[piece.start..piece.end];
-        let split = if depth < FREE_DEPTH { best_split(range, &piece.span, self.quality) } else { None };
+        let split =
+            if depth < FREE_DEPTH { best_split(self.level, range, &piece.span, self.quality) } else { None };
         let (middle, low, high) = match split {
             Some(split) if piece.fits => {
-                let whole = piece.span.bounds.half_area() * leaf_cost(piece.weight);
+                let whole = piece.area * leaf_cost(piece.weight as u32);
                 if split.cost >= whole {
                     return None;
                 }
-                part(range, |reference| split.below(reference))
+                part(self.level, range, |reference| split.below(reference))
             }
-            Some(split) => part(range, |reference| split.below(reference)),
+            Some(split) => part(self.level, range, |reference| split.below(reference)),
             None if piece.fits => return None,
             // All centres coincide, or the tree is deep: the halves by count.
             None => {
                 let middle = range.len() / 2;
-                (middle, Span::of(&range[..middle]), Span::of(&range[middle..]))
+                (middle, Span::of(self.level, &range[..middle]), Span::of(self.level, &range[middle..]))
             }
         };
-        let made = |start, end, span| {
+        let made = |start, end, span: Span| {
             let range = &members[start..end];
-            let (weight, fits) = (weight(range), fits(range));
-            Piece { start, end, span, weight, fits, closed: end - start == 1 }
+            let (weight, fits, area) = (weight(range), fits(range), span.bounds.half_area());
+            Piece { start, end, span, area, weight, fits, closed: end - start == 1 }
         };
         let middle = piece.start + middle;
         Some((made(piece.start, middle, low), made(middle, piece.end, high)))
@@ -301,8 +308,7 @@ fn stay_together(clusters: &[Cluster]) -> bool {
 fn choose(pieces: &[Piece], depth: u32) -> Option<usize> {
     let open = pieces.iter().enumerate().filter(|(_, piece)| !piece.closed);
     if depth < FREE_DEPTH {
-        open.max_by(|(_, a), (_, b)| a.span.bounds.half_area().total_cmp(&b.span.bounds.half_area()))
-            .map(|(i, _)| i)
+        open.max_by(|(_, a), (_, b)| a.area.total_cmp(&b.area)).map(|(i, _)| i)
     } else {
         open.filter(|(_, piece)| !piece.fits).max_by_key(|(_, piece)| piece.len()).map(|(i, _)| i)
     }

@@ -11,6 +11,7 @@
 use crate::bvh::partition::Member;
 use crate::bvh::partition::Reference;
 use crate::bvh::partition::Span;
+use crate::simd::Level;
 
 /// References whose centres lie in one cell.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +41,7 @@ impl Cluster {
 
 /// The grid over the centres: how many bits of a cell's number each axis has.
 struct Grid {
-    low: [f32; 4],
+    low: [f32; 3],
     scale: [f32; 3],
     bits: [u32; 3],
 }
@@ -48,7 +49,7 @@ struct Grid {
 impl Grid {
     /// Some 2^`total` cells, nearly cubes.
     fn new(span: &Span, total: u32) -> Self {
-        let length: [f32; 3] = std::array::from_fn(|axis| span.centers.high[axis] - span.centers.low[axis]);
+        let length: [f32; 3] = std::array::from_fn(|axis| span.centers.high(axis) - span.centers.low(axis));
         let mut edge = length;
         let mut bits = [0; 3];
         for _ in 0..total {
@@ -66,13 +67,13 @@ impl Grid {
             // A little less than all cells' worth, so that the last centre falls into the last cell.
             if length[axis] > 1e-30 { (1_u32 << bits[axis]) as f32 * 0.999_99 / length[axis] } else { 0.0 }
         });
-        Self { low: span.centers.low, scale, bits }
+        Self { low: [0, 1, 2].map(|axis| span.centers.low(axis)), scale, bits }
     }
 
     #[inline(always)]
     fn cell(&self, reference: &Reference) -> usize {
-        let center = reference.center();
-        let place = |axis: usize| ((center[axis] - self.low[axis]) * self.scale[axis]) as u32 as usize;
+        let place =
+            |axis: usize| ((reference.center_on(axis) - self.low[axis]) * self.scale[axis]) as u32 as usize;
         (place(2) << self.bits[1] | place(1)) << self.bits[0] | place(0)
     }
 }
@@ -90,7 +91,7 @@ const SPREAD: u32 = 3;
 
 impl Clusters {
     /// Sorts the references into cells; `None` where more than a quarter would share one, whom clusters cannot help.
-    pub fn of(references: &[Reference], span: &Span) -> Option<Self> {
+    pub fn of(level: Level, references: &[Reference], span: &Span) -> Option<Self> {
         let bits = references.len().ilog2().saturating_sub(SPREAD);
         let grid = Grid::new(span, bits);
         let cells: Vec<u32> = references.iter().map(|reference| grid.cell(reference) as u32).collect();
@@ -116,7 +117,7 @@ impl Clusters {
         }
         let cluster = |(start, count)| {
             let members = &sorted[start as usize..(start + count) as usize];
-            Cluster { whole: Reference::new(Span::of(members).bounds.narrow(), 0), start, count }
+            Cluster { whole: Reference::new(Span::of(level, members).bounds.narrow(), 0), start, count }
         };
         let clusters = clusters.into_iter().map(cluster).collect();
         Some(Self { sorted, clusters })
@@ -127,6 +128,7 @@ impl Clusters {
 mod tests {
     use super::*;
     use crate::narrow::NarrowBox;
+    use crate::simd::level;
 
     #[test]
     fn every_reference_is_in_one_cluster_that_holds_it() {
@@ -141,14 +143,15 @@ mod tests {
                 Reference::new(NarrowBox { low, high: low.map(|x| x + 0.01) }, number)
             })
             .collect();
-        let Clusters { sorted, clusters } = Clusters::of(&references, &Span::of(&references)).unwrap();
+        let Clusters { sorted, clusters } =
+            Clusters::of(level(), &references, &Span::of(level(), &references)).unwrap();
         let mut numbers: Vec<u32> = Vec::new();
         for cluster in &clusters {
             let bounds = cluster.reference().span().bounds;
             for member in cluster.of(&sorted) {
                 numbers.push(member.number());
                 let own = member.span().bounds;
-                assert!((0..3).all(|i| bounds.low[i] <= own.low[i] && own.high[i] <= bounds.high[i]));
+                assert!((0..3).all(|i| bounds.low(i) <= own.low(i) && own.high(i) <= bounds.high(i)));
             }
         }
         numbers.sort_unstable();
@@ -160,6 +163,6 @@ mod tests {
     fn references_in_one_place_are_no_clusters() {
         let same = NarrowBox { low: [0.1, 0.2, 0.3], high: [0.2, 0.3, 0.4] };
         let references: Vec<Reference> = (0..5000).map(|number| Reference::new(same, number)).collect();
-        assert!(Clusters::of(&references, &Span::of(&references)).is_none());
+        assert!(Clusters::of(level(), &references, &Span::of(level(), &references)).is_none());
     }
 }

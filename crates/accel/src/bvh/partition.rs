@@ -1,21 +1,25 @@
 //! What the builder moves: one reference an item, and how a range of them is parted in place.
 
 use crate::narrow::NarrowBox;
+use crate::simd::Level;
+use crate::simd::Simd;
+use crate::simd::dispatch;
+use crate::simd::f32x4;
+use crate::simd::f32x8;
+use crate::simd::prelude::*;
 use rayon::prelude::*;
 
 /// Ranges with more references are parted by all threads, piece by piece; the pieces never depend on the threads.
 pub const PIECE: usize = 1 << 15;
 
-/// An item while the tree grows: its box and its number, 32 bytes.
+/// An item while the tree grows: its box and its number, 32 bytes, one vector.
 ///
-/// The number's bits stand in a float lane so that the box is two vectors. They are only ever copied; bit 30 is
-/// flipped so that, whatever the number, they are a normal float and slow no arithmetic on the whole vector down.
+/// Lanes 0 to 2 hold the smallest coordinates, lanes 4 to 6 the largest ones negated, so that one `min` joins two boxes.
+/// The number's bits stand in lane 3. They are only ever copied; bit 30 is flipped so that, whatever the number, they
+/// are a normal float and slow no arithmetic on the whole vector down.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(16))]
-pub struct Reference {
-    low: [f32; 4],
-    high: [f32; 4],
-}
+#[repr(C, align(32))]
+pub struct Reference([f32; 8]);
 
 /// What ranges are parted into: references, or clusters of them.
 pub trait Member: Copy + Send + Sync {
@@ -45,87 +49,92 @@ impl Reference {
     /// The reference of an item; `number` has 28 bits, and bit 31 for what it likes.
     pub fn new(bounds: NarrowBox, number: u32) -> Self {
         let ([a, b, c], [d, e, f]) = (bounds.low, bounds.high);
-        Self { low: [a, b, c, f32::from_bits(number ^ FLIP)], high: [d, e, f, 0.0] }
+        Self([a, b, c, f32::from_bits(number ^ FLIP), -d, -e, -f, 0.0])
     }
 
     /// The item's number.
     pub fn number(&self) -> u32 {
-        self.low[3].to_bits() ^ FLIP
+        self.0[3].to_bits() ^ FLIP
     }
 
     /// What a builder knows of a range of this one alone.
     #[cfg(test)]
     pub fn span(&self) -> Span {
-        Span::of(&[*self])
+        Span::of(crate::simd::level(), &[*self])
     }
 
-    /// Twice the centre of the box.
+    /// Its box.
     #[inline(always)]
-    pub fn center(&self) -> [f32; 4] {
-        std::array::from_fn(|i| self.low[i] + self.high[i])
+    pub fn vector<S: Simd>(&self, simd: S) -> f32x8<S> {
+        f32x8::load_array_ref(simd, &self.0)
+    }
+
+    /// Twice the centre of a box.
+    #[inline(always)]
+    pub fn center<S: Simd>(_: S, bounds: f32x8<S>) -> f32x4<S> {
+        let (low, high) = bounds.split();
+        low - high
+    }
+
+    /// Twice the centre on one axis.
+    #[inline(always)]
+    pub fn center_on(&self, axis: usize) -> f32 {
+        self.0[axis] - self.0[4 + axis]
     }
 }
 
-/// A box that grows, four lanes wide so that the compiler uses vectors; the fourth lane means nothing.
+/// A box that grows, in the lanes of [`Reference`]; lanes 3 and 7 mean nothing.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(16))]
-pub struct Extent {
-    /// The smallest coordinates.
-    pub low: [f32; 4],
-    /// The largest.
-    pub high: [f32; 4],
-}
+#[repr(C, align(32))]
+pub struct Extent([f32; 8]);
 
 impl Extent {
     /// The box that holds nothing.
-    pub const EMPTY: Self = Self { low: [f32::INFINITY; 4], high: [f32::NEG_INFINITY; 4] };
+    pub const EMPTY: Self = Self([f32::INFINITY; 8]);
 
-    /// Takes in a reference's box.
+    /// The smallest coordinate on an axis.
     #[inline(always)]
-    pub fn add(&mut self, reference: &Reference) {
-        self.low = min(self.low, reference.low);
-        self.high = max(self.high, reference.high);
+    pub fn low(&self, axis: usize) -> f32 {
+        self.0[axis]
     }
 
-    /// Takes in a point.
+    /// The largest.
     #[inline(always)]
-    pub fn add_point(&mut self, point: [f32; 4]) {
-        self.low = min(self.low, point);
-        self.high = max(self.high, point);
+    pub fn high(&self, axis: usize) -> f32 {
+        -self.0[4 + axis]
+    }
+
+    /// As a vector.
+    #[inline(always)]
+    pub fn vector<S: Simd>(&self, simd: S) -> f32x8<S> {
+        f32x8::load_array_ref(simd, &self.0)
+    }
+
+    /// Takes in a box.
+    #[inline(always)]
+    pub fn add<S: Simd>(&mut self, simd: S, bounds: f32x8<S>) {
+        self.0 = self.vector(simd).min(bounds).to_array();
     }
 
     /// Takes in a box.
     #[inline(always)]
     pub fn join(&mut self, other: &Self) {
-        self.low = min(self.low, other.low);
-        self.high = max(self.high, other.high);
+        for (own, &other) in self.0.iter_mut().zip(&other.0) {
+            *own = if other < *own { other } else { *own };
+        }
     }
 
     /// Half the surface; 0 where it is empty.
     #[inline(always)]
     pub fn half_area(&self) -> f32 {
-        let edges: [f32; 4] = std::array::from_fn(|i| self.high[i] - self.low[i]);
-        let [x, y, z, _] = max(edges, [0.0; 4]);
+        let [x, y, z] = [0, 1, 2].map(|axis| (self.high(axis) - self.low(axis)).max(0.0));
         x * (y + z) + y * z
     }
 
     /// The box as nodes hold it.
     pub fn narrow(&self) -> NarrowBox {
-        let ([a, b, c, _], [d, e, f, _]) = (self.low, self.high);
-        NarrowBox { low: [a, b, c], high: [d, e, f] }
+        NarrowBox { low: [0, 1, 2].map(|axis| self.low(axis)), high: [0, 1, 2].map(|axis| self.high(axis)) }
     }
-}
-
-/// The lesser of each lane, in a form that is one instruction.
-#[inline(always)]
-fn min(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
-    std::array::from_fn(|i| if b[i] < a[i] { b[i] } else { a[i] })
-}
-
-/// The greater of each lane.
-#[inline(always)]
-fn max(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
-    std::array::from_fn(|i| if b[i] > a[i] { b[i] } else { a[i] })
 }
 
 /// What the builder knows of a range of references: the box around their boxes and the one around their centres.
@@ -142,26 +151,25 @@ impl Span {
     pub const EMPTY: Self = Self { bounds: Extent::EMPTY, centers: Extent::EMPTY };
 
     /// Of these references, by all threads where they are many.
-    pub fn of<T: Member>(members: &[T]) -> Self {
+    pub fn of<T: Member>(level: Level, members: &[T]) -> Self {
+        let one = |members: &[T]| dispatch!(level, simd => Self::of_few(simd, members));
         if members.len() <= PIECE {
-            return Self::of_few(members);
+            return one(members);
         }
-        members.par_chunks(PIECE).map(Self::of_few).reduce(|| Self::EMPTY, Self::joined)
+        members.par_chunks(PIECE).map(one).reduce(|| Self::EMPTY, Self::joined)
     }
 
     /// Of these, by this thread.
     #[inline(always)]
-    fn of_few<T: Member>(members: &[T]) -> Self {
-        let mut span = Self::EMPTY;
-        members.iter().for_each(|member| span.add(member.reference()));
-        span
-    }
-
-    /// Takes in a reference.
-    #[inline(always)]
-    pub fn add(&mut self, reference: &Reference) {
-        self.bounds.add(reference);
-        self.centers.add_point(reference.center());
+    fn of_few<S: Simd, T: Member>(simd: S, members: &[T]) -> Self {
+        let (mut bounds, mut centers) = (Extent::EMPTY.vector(simd), Extent::EMPTY.vector(simd));
+        for member in members {
+            let member = member.reference().vector(simd);
+            let center = Reference::center(simd, member);
+            bounds = bounds.min(member);
+            centers = centers.min(center.combine(-center));
+        }
+        Self { bounds: Extent(bounds.to_array()), centers: Extent(centers.to_array()) }
     }
 
     /// Of two ranges together.
@@ -173,11 +181,16 @@ impl Span {
 }
 
 /// Parts the members in place, those that are `below` first; returns how many they are and both spans.
-pub fn part<T: Member>(members: &mut [T], below: impl Fn(&Reference) -> bool + Sync) -> (usize, Span, Span) {
+pub fn part<T: Member>(
+    level: Level,
+    members: &mut [T],
+    below: impl Fn(&Reference) -> bool + Sync,
+) -> (usize, Span, Span) {
+    let one = |members: &mut [T]| dispatch!(level, simd => part_piece(simd, members, &below));
     if members.len() <= PIECE {
-        return part_piece(members, &below);
+        return one(members);
     }
-    let pieces: Vec<_> = members.par_chunks_mut(PIECE).map(|piece| part_piece(piece, &below)).collect();
+    let pieces: Vec<_> = members.par_chunks_mut(PIECE).map(one).collect();
     let middle = pieces.iter().map(|&(count, ..)| count).sum();
     let spans = pieces
         .iter()
@@ -187,7 +200,12 @@ pub fn part<T: Member>(members: &mut [T], below: impl Fn(&Reference) -> bool + S
 }
 
 /// Parts one piece.
-fn part_piece<T: Member>(members: &mut [T], below: &impl Fn(&Reference) -> bool) -> (usize, Span, Span) {
+#[inline(always)]
+fn part_piece<S: Simd, T: Member>(
+    simd: S,
+    members: &mut [T],
+    below: &impl Fn(&Reference) -> bool,
+) -> (usize, Span, Span) {
     // Every member changes places with the first that is not below, itself included: no branch to guess wrong. The
     // spans follow in loops of their own, which keep them in registers: half the time of both at once.
     let mut middle = 0;
@@ -198,7 +216,7 @@ fn part_piece<T: Member>(members: &mut [T], below: &impl Fn(&Reference) -> bool)
         middle += usize::from(below(member.reference()));
     }
     let (low, high) = members.split_at(middle);
-    (middle, Span::of_few(low), Span::of_few(high))
+    (middle, Span::of_few(simd, low), Span::of_few(simd, high))
 }
 
 /// Brings the pieces' parts together: what lies on the wrong side of `middle` changes places, run by run.
@@ -252,6 +270,7 @@ fn runs<'a, T>(mut slice: &'a mut [T], ranges: &[std::ops::Range<usize>]) -> std
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simd::level;
 
     #[test]
     fn many_references_are_parted_as_few_are() {
@@ -264,17 +283,17 @@ mod tests {
                     Reference::new(at(state >> 16), number)
                 })
                 .collect();
-            let below = |reference: &Reference| reference.low[0] < 20_000.0;
+            let below = |reference: &Reference| reference.0[0] < 20_000.0;
             let expected = references.iter().filter(|reference| below(reference)).count();
-            let (middle, low, high) = part(&mut references, below);
+            let (middle, low, high) = part(level(), &mut references, below);
             assert_eq!(middle, expected);
             assert!(references[..middle].iter().all(below));
             assert!(!references[middle..].iter().any(below));
             let mut numbers: Vec<_> = references.iter().map(Reference::number).collect();
             numbers.sort_unstable();
             assert!(numbers.into_iter().eq(0..count));
-            assert_eq!(low.bounds.low, Span::of(&references[..middle]).bounds.low);
-            assert_eq!(high.centers.high[0], Span::of(&references[middle..]).centers.high[0]);
+            assert_eq!(low.bounds.low(0), Span::of(level(), &references[..middle]).bounds.low(0));
+            assert_eq!(high.centers.high(0), Span::of(level(), &references[middle..]).centers.high(0));
         }
     }
 }

@@ -6,6 +6,14 @@ use crate::bvh::partition::PIECE;
 use crate::bvh::partition::Reference;
 use crate::bvh::partition::Span;
 use crate::input::Quality;
+use crate::simd::Level;
+use crate::simd::Simd;
+use crate::simd::dispatch;
+use crate::simd::f32x4;
+use crate::simd::f32x8;
+use crate::simd::i32x4;
+use crate::simd::prelude::*;
+use crate::simd::u32x4;
 use rayon::prelude::*;
 
 /// A place to part a range: references whose centre falls into a bin below `bin` go first.
@@ -23,22 +31,26 @@ impl Split {
     /// On which side a reference falls.
     #[inline(always)]
     pub fn below(&self, reference: &Reference) -> bool {
-        (bin(reference.center()[self.axis], self.low, self.scale) as usize) < self.bin
+        (bin(reference.center_on(self.axis), self.low, self.scale) as usize) < self.bin
     }
 }
 
-/// The number of the bin into which a centre falls, in the lowest bits: one number is counted and parted by.
-///
-/// Adding 1.5 * 2^23 rounds to the nearest whole number and leaves it in the lowest bits of the mantissa, which is
-/// several instructions less than a conversion that saturates.
+/// A number that, added to a smaller one, rounds that to the nearest whole number and leaves it in the lowest bits of
+/// the mantissa, which is several instructions less than a conversion that saturates: 1.5 * 2^23.
+const ROUNDING: f32 = 12_582_912.0;
+
+/// The bits that may hold the number of a bin.
+const BIN_BITS: u32 = 63;
+
+/// The number of the bin into which a centre falls.
 #[inline(always)]
 fn bin(center: f32, low: f32, scale: f32) -> u32 {
-    ((center - low) * scale - 0.5 + 12_582_912.0).to_bits() & 63
+    ((center - low) * scale - 0.5 + ROUNDING).to_bits() & BIN_BITS
 }
 
 /// What testing `count` items costs, where the test of a node costs 1: reaching the leaf, and each item.
 #[inline(always)]
-pub fn leaf_cost(count: usize) -> f32 {
+pub fn leaf_cost(count: u32) -> f32 {
     LEAF_COST + ITEM_COST * count as f32
 }
 
@@ -52,14 +64,14 @@ const ITEM_COST: f32 = 0.3;
 const FEW: usize = 32;
 
 /// The best of the splits tried, or none where all centres lie in one bin.
-pub fn best_split(members: &[impl Member], span: &Span, quality: Quality) -> Option<Split> {
+pub fn best_split(level: Level, members: &[impl Member], span: &Span, quality: Quality) -> Option<Split> {
     match quality {
-        Quality::Fast => Bins::<8>::of(members, span).best(),
+        Quality::Fast => Bins::<8>::best_of(level, members, span),
         // Few members fall into few bins, and most splits are of few members. (Twice the bins for all of a small scene
         // were tried: lattice12 has 11 % fewer box tests of it, and takes as long.)
-        Quality::Balanced if members.len() <= FEW => Bins::<8>::of(members, span).best(),
-        Quality::Balanced => Bins::<16>::of(members, span).best(),
-        Quality::Best => Bins::<32>::of(members, span).best(),
+        Quality::Balanced if members.len() <= FEW => Bins::<8>::best_of(level, members, span),
+        Quality::Balanced => Bins::<16>::best_of(level, members, span),
+        Quality::Best => Bins::<32>::best_of(level, members, span),
     }
 }
 
@@ -69,46 +81,55 @@ struct Bins<const N: usize> {
     low: [f32; 4],
     scale: [f32; 4],
     extents: [[Extent; N]; 3],
-    counts: [[u32; N]; 3],
+    counts: [[i32; N]; 3],
 }
 
 impl<const N: usize> Bins<N> {
     /// No references, with bins over the span's centres.
+    #[inline(always)]
     fn empty(span: &Span) -> Self {
-        let mut scale = [0.0; 4];
-        for (axis, scale) in scale.iter_mut().enumerate().take(3) {
-            let length = span.centers.high[axis] - span.centers.low[axis];
-            // A little less than N bins' worth, so that the last centre falls into the last bin.
-            *scale = if length > 1e-30 { N as f32 * 0.999_99 / length } else { 0.0 };
+        let (mut low, mut scale) = ([0.0; 4], [0.0; 4]);
+        for axis in 0..3 {
+            low[axis] = span.centers.low(axis);
+            let length = span.centers.high(axis) - low[axis];
+            // A little less than N bins' worth, so that the last centre falls into the last bin. Where all centres
+            // coincide on an axis, all fall into the first.
+            scale[axis] = if length > 1e-30 { N as f32 * 0.999_99 / length } else { 0.0 };
         }
-        Self { low: span.centers.low, scale, extents: [[Extent::EMPTY; N]; 3], counts: [[0; N]; 3] }
+        Self { low, scale, extents: [[Extent::EMPTY; N]; 3], counts: [[0; N]; 3] }
     }
 
-    /// All the members, counted by all threads where they are many.
-    fn of(members: &[impl Member], span: &Span) -> Self {
-        let mut bins = Self::empty(span);
+    /// The best split of the members, who are counted by all threads where they are many.
+    fn best_of(level: Level, members: &[impl Member], span: &Span) -> Option<Split> {
         if members.len() <= PIECE {
-            bins.add(members);
-            return bins;
+            return dispatch!(level, simd => {
+                let mut bins = Self::empty(span);
+                bins.add(simd, members);
+                bins.best(simd)
+            });
         }
         let pieces = members.par_chunks(PIECE).map(|piece| {
             let mut bins = Self::empty(span);
-            bins.add(piece);
+            dispatch!(level, simd => bins.add(simd, piece));
             bins
         });
-        pieces.reduce(|| bins.clone(), Self::joined)
+        let bins = pieces.reduce(|| Self::empty(span), Self::joined);
+        dispatch!(level, simd => bins.best(simd))
     }
 
     /// These as well.
-    fn add(&mut self, members: &[impl Member]) {
+    #[inline(always)]
+    fn add<S: Simd>(&mut self, simd: S, members: &[impl Member]) {
+        let low = f32x4::load_array(simd, self.low);
+        let scale = f32x4::load_array(simd, self.scale);
         for member in members {
-            let reference = member.reference();
-            let center = reference.center();
-            let place: [u32; 4] = std::array::from_fn(|i| bin(center[i], self.low[i], self.scale[i]));
+            let bounds = member.reference().vector(simd);
+            let place = (Reference::center(simd, bounds) - low) * scale - 0.5 + ROUNDING;
+            let place = (place.bitcast::<u32x4<S>>() & BIN_BITS).to_array();
             for axis in 0..3 {
                 let bin = place[axis] as usize % N;
-                self.extents[axis][bin].add(reference);
-                self.counts[axis][bin] += member.weight() as u32;
+                self.extents[axis][bin].add(simd, bounds);
+                self.counts[axis][bin] += member.weight() as i32;
             }
         }
     }
@@ -124,48 +145,77 @@ impl<const N: usize> Bins<N> {
         self
     }
 
-    /// The split of least cost.
-    fn best(&self) -> Option<Split> {
-        let mut best = Split { axis: 0, bin: 0, low: 0.0, scale: 0.0, cost: f32::INFINITY };
+    /// The split of least cost; of several, the one on the first axis and below the first bin.
+    #[inline(always)]
+    fn best<S: Simd>(&self, simd: S) -> Option<Split> {
+        // Four splits are compared at a time, each with the best in its lane: no branch to guess wrong.
+        let mut least = f32x4::splat(simd, f32::INFINITY);
+        let mut codes = i32x4::splat(simd, 0);
+        let lanes = i32x4::load_array(simd, [0, 1, 2, 3]);
         for axis in 0..3 {
-            if self.scale[axis] == 0.0 {
-                continue;
-            }
-            // What each way to split costs, all of them before any is compared: no branch to guess wrong.
-            let costs = self.costs(axis);
-            let least =
-                costs[1..].iter().fold(f32::INFINITY, |least, &cost| if cost < least { cost } else { least });
-            if least < best.cost {
-                let bin = costs.iter().position(|&cost| cost == least).unwrap_or(0);
-                best = Split { axis, bin, low: self.low[axis], scale: self.scale[axis], cost: least };
+            let below = self.sides(simd, axis, 0..N - 1, 1);
+            let above = self.sides(simd, axis, (1..N).rev(), 0);
+            let (edges_below, edges_above) = (below.edges.as_flattened(), above.edges.as_flattened());
+            let edges = edges_below.as_chunks().0.iter().zip(edges_above.as_chunks().0);
+            let counts = below.counts.as_chunks().0.iter().zip(above.counts.as_chunks().0);
+            for (block, (edges, counts)) in edges.zip(counts).enumerate() {
+                let cost = side_costs(simd, edges.0, counts.0) + side_costs(simd, edges.1, counts.1);
+                let better = cost.simd_lt(least);
+                least = better.select(cost, least);
+                codes = better.select(lanes + (axis * N + block * 4) as i32, codes);
             }
         }
-        (best.bin > 0).then_some(best)
+        let (least, codes) = (least.to_array(), codes.to_array());
+        let first = |a: usize, b: usize| {
+            let ahead = least[a] < least[b] || (least[a] == least[b] && codes[a] < codes[b]);
+            if ahead { a } else { b }
+        };
+        let lane = first(first(0, 1), first(2, 3));
+        let (axis, bin) = (codes[lane] as usize / N, codes[lane] as usize % N);
+        (least[lane] < f32::INFINITY).then(|| Split {
+            axis,
+            bin,
+            low: self.low[axis],
+            scale: self.scale[axis],
+            cost: least[lane],
+        })
     }
 
-    /// What both sides cost where an axis is split below each bin; infinite where one side is empty.
-    fn costs(&self, axis: usize) -> [f32; N] {
-        let (extents, counts) = (&self.extents[axis], &self.counts[axis]);
-        let mut costs = [f32::INFINITY; N];
-        let (mut extent, mut count) = (Extent::EMPTY, 0);
-        for bin in (1..N).rev() {
-            extent.join(&extents[bin]);
-            count += counts[bin];
-            costs[bin] = side_cost(&extent, count);
+    /// One side of every split of an axis: what its bins, taken in this order, come to. The side with bin `i` as its
+    /// last belongs to the split below bin `i + shift`.
+    #[inline(always)]
+    fn sides<S: Simd>(
+        &self,
+        simd: S,
+        axis: usize,
+        bins: impl Iterator<Item = usize>,
+        shift: usize,
+    ) -> Sides<N> {
+        let mut sides = Sides { edges: [[f32::INFINITY; 4]; N], counts: [0; N] };
+        let (mut extent, mut count) = (f32x8::splat(simd, f32::INFINITY), 0);
+        for bin in bins {
+            extent = extent.min(self.extents[axis][bin].vector(simd));
+            count += self.counts[axis][bin];
+            let (low, high) = extent.split();
+            sides.edges[bin + shift] = (low + high).to_array();
+            sides.counts[bin + shift] = count;
         }
-        let (mut extent, mut count) = (Extent::EMPTY, 0);
-        for bin in 1..N {
-            extent.join(&extents[bin - 1]);
-            count += counts[bin - 1];
-            costs[bin] += side_cost(&extent, count);
-        }
-        costs
+        sides
     }
 }
 
-/// What one side of a split costs: infinite where it is empty.
+/// One side of every split of an axis.
+struct Sides<const N: usize> {
+    /// The edges of the boxes, negated: infinite where there is nothing.
+    edges: [[f32; 4]; N],
+    /// For how many references each stands.
+    counts: [i32; N],
+}
+
+/// What four sides cost, by their negated edges and their counts: infinite where there is nothing.
 #[inline(always)]
-fn side_cost(extent: &Extent, count: u32) -> f32 {
-    let cost = extent.half_area() * leaf_cost(count as usize);
-    if count > 0 { cost } else { f32::INFINITY }
+fn side_costs<S: Simd>(simd: S, edges: &[f32; 16], counts: &[i32; 4]) -> f32x4<S> {
+    let [x, y, z, _] = simd.load_four_interleaved_f32x4(edges);
+    let items = i32x4::load_array_ref(simd, counts).to_float::<f32x4<S>>() * ITEM_COST;
+    (x * (y + z) + y * z) * (items + LEAF_COST)
 }
