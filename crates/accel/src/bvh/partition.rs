@@ -92,6 +92,11 @@ impl Extent {
     /// The box that holds nothing.
     pub const EMPTY: Self = Self([f32::INFINITY; 8]);
 
+    /// A reference's box.
+    pub fn of(reference: &Reference) -> Self {
+        Self(reference.0)
+    }
+
     /// The smallest coordinate on an axis.
     #[inline(always)]
     pub fn low(&self, axis: usize) -> f32 {
@@ -210,10 +215,9 @@ fn part_piece<S: Simd, T: Member>(
     // spans follow in loops of their own, which keep them in registers: half the time of both at once.
     let mut middle = 0;
     for i in 0..members.len() {
-        let member = members[i];
-        members[i] = members[middle];
-        members[middle] = member;
-        middle += usize::from(below(member.reference()));
+        let is_below = below(members[i].reference());
+        members.swap(i, middle);
+        middle += usize::from(is_below);
     }
     let (low, high) = members.split_at(middle);
     (middle, Span::of_few(simd, low), Span::of_few(simd, high))
