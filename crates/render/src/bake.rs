@@ -111,6 +111,9 @@ impl RunIndex {
     /// Which of the runs holds shape `number`.
     #[inline]
     pub fn find(&self, runs: &[Run], number: u32) -> usize {
+        if runs.len() == 1 {
+            return 0;
+        }
         let mark = (number / Self::STEP) as usize;
         let (first, last) = (self.marks[mark] as usize, self.marks[mark + 1] as usize);
         first + runs[first..=last].partition_point(|run| run.first_shape <= number) - 1
@@ -143,7 +146,12 @@ impl Baked {
             let piece = |numbers: &[u32]| {
                 let mut piece = Self::default();
                 piece.reserve(lists, numbers.len());
-                numbers.iter().for_each(|&number| piece.push(lists, number, &material));
+                match lists.runs.first() {
+                    Some(run) if lists.runs.len() == 1 && run.kind == ShapeKind::Sphere && run.frame == 0 => {
+                        piece.push_spheres(lists, run, numbers, &material);
+                    }
+                    _ => numbers.iter().for_each(|&number| piece.push(lists, number, &material)),
+                }
                 piece
             };
             let baked: Vec<Self> = pieces.par_chunks(PIECE).map(piece).collect();
@@ -203,6 +211,31 @@ impl Baked {
             self.bake(lists, &shape, run.frame as usize)
         };
         self.slots.push(slot);
+    }
+
+    /// Appends spheres of a scene that has nothing else, list by list: they are read in the order of the leaves, each
+    /// from another place, and a short loop waits for many of them at once.
+    fn push_spheres(
+        &mut self,
+        lists: &Lists,
+        run: &Run,
+        numbers: &[u32],
+        material: impl Fn(&Run, i32) -> u32,
+    ) {
+        let file = &lists.files[run.file.0 as usize];
+        let entry = |number: &u32| (run.first + (number - run.first_shape)) as usize;
+        let (first, place) = (self.spheres.len(), self.slots.len());
+        let materials = file.shape_materials(run.kind);
+        self.spheres.reserve_exact(numbers.len());
+        self.spheres.extend(numbers.iter().map(|number| file.spheres.shapes[entry(number)]));
+        self.materials.extend(numbers.iter().map(|number| material(run, materials[entry(number)])));
+        self.numbers.extend_from_slice(numbers);
+        self.slots.extend((first..first + numbers.len()).map(|index| Slot::new(Form::Sphere, index)));
+        if let Some(frame) = &lists.cull_frame {
+            for (sphere, position) in self.spheres[first..].iter().zip(place..) {
+                self.culls.put_ball(frame, position, sphere.center(), sphere.radius());
+            }
+        }
     }
 
     /// Appends the shapes of the positions that follow.
