@@ -116,6 +116,11 @@ impl RunIndex {
         }
         let mark = (number / Self::STEP) as usize;
         let (first, last) = (self.marks[mark] as usize, self.marks[mark + 1] as usize);
+        // Where every shape is a run of its own, the search would wait for memory several times over.
+        let guess = (first + (number % Self::STEP) as usize).min(last);
+        if runs[guess].first_shape == number && runs[guess].count > 0 {
+            return guess;
+        }
         first + runs[first..=last].partition_point(|run| run.first_shape <= number) - 1
     }
 }
