@@ -5,9 +5,9 @@ use dotray::render::Fingerprint;
 use dotray::render::LayerFilm;
 use dotray::render::TileFile;
 use dotray::render::TilePixels;
+use dotray::render::progress::SavedKind;
 use dotray::render::tile_file::Known;
 use dotray::render::tile_file::fingerprint_of;
-use serde_json::json;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -129,10 +129,7 @@ impl Keep {
             Ok(()) => {
                 state.failed = false;
                 tracing::debug!("finished tiles are in {}", self.path.display());
-                events::emit(
-                    "saved",
-                    json!({ "kind": "checkpoint", "file": self.path.display().to_string() }),
-                );
+                events::saved(SavedKind::Checkpoint, &self.path);
             }
             Err(error) => {
                 if !state.failed {
