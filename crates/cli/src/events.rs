@@ -83,11 +83,20 @@ mod tests {
     /// Every event with every key, as it has been written since schema 1: whoever changes one of these lines breaks
     /// programs that read them, unless the key is new.
     const LINES: [&str; 10] = [
-        r#"{"event":"start","seconds":0.0,"schema":1,"version":"0.1.0","command":"render","scene":"a.ray","picture":"a.png"}"#,
+        concat!(
+            r#"{"event":"start","seconds":0.0,"schema":1,"version":"0.1.0","command":"render","#,
+            r#""scene":"a.ray","picture":"a.png"}"#
+        ),
         r#"{"event":"picture","seconds":0.5,"width":4,"height":3,"tiles":2,"finished_pixels":0,"total_pixels":12}"#,
         r#"{"event":"layers","seconds":0.5,"width":4,"height":3,"tiles":2,"finished_pixels":0,"total_pixels":12}"#,
-        r#"{"event":"progress","seconds":1.0,"finished_pixels":6,"total_pixels":12,"pixels_per_second":6.5,"seconds_left":1.25}"#,
-        r#"{"event":"progress","seconds":1.0,"finished_pixels":0,"total_pixels":12,"pixels_per_second":0.0,"seconds_left":null}"#,
+        concat!(
+            r#"{"event":"progress","seconds":1.0,"finished_pixels":6,"total_pixels":12,"#,
+            r#""pixels_per_second":6.5,"seconds_left":1.25}"#
+        ),
+        concat!(
+            r#"{"event":"progress","seconds":1.0,"finished_pixels":0,"total_pixels":12,"#,
+            r#""pixels_per_second":0.0,"seconds_left":null}"#
+        ),
         r#"{"event":"saved","seconds":1.5,"kind":"checkpoint","file":"a.tiles"}"#,
         r#"{"event":"saved","seconds":1.5,"kind":"partial","file":"a.png"}"#,
         r#"{"event":"frame","seconds":1.5,"frame":7,"frames":48}"#,

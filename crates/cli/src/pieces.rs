@@ -201,6 +201,18 @@ pub fn words_of(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
     if !plan.layers.is_empty() {
         say("layers", layers::names(&plan.layers));
     }
+    match typed.missing_texture {
+        MissingTexture::White => say("missing-texture", "white".to_owned()),
+        MissingTexture::Error => {}
+    }
+    words.extend(words_around(plan, typed));
+    words
+}
+
+/// The options that say what lies behind and over a picture.
+fn words_around(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut say = |name: &str, value: String| words.push(format!("--{name}={value}"));
     match &typed.background {
         Some(Background::Color(color)) => say("background", format!("{},{},{}", color.x, color.y, color.z)),
         Some(Background::Transparent) => say("background", "transparent".to_owned()),
@@ -212,10 +224,6 @@ pub fn words_of(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
         if let Some(levels) = typed.overlay_levels {
             say("overlay-levels", levels.to_string());
         }
-    }
-    match typed.missing_texture {
-        MissingTexture::White => say("missing-texture", "white".to_owned()),
-        MissingTexture::Error => {}
     }
     words
 }
