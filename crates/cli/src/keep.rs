@@ -184,7 +184,8 @@ fn load(path: &Path, fingerprint: &Fingerprint, films: &Films) -> Result<TileFil
     if !differences.is_empty() {
         let list = differences.join("; ");
         return Err(Failure::Failed(format!(
-            "the checkpoint `{name}` belongs to another picture ({list}); delete it to begin anew"
+            "the checkpoint `{name}` belongs to another picture ({list}); \
+             go on with what it was begun with, or delete it to begin anew"
         )));
     }
     let mut file = TileFile::open(path, fingerprint).map_err(fault)?;

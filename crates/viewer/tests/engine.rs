@@ -48,6 +48,7 @@ fn finish(engine: &mut Engine, serial: u64) -> (Arc<Image>, usize) {
             replies += 1;
             if let Some(image) = image {
                 assert!(progress.percent() == 100 && !engine.is_busy());
+                assert!(progress.pixels_per_second > 0.0 && progress.seconds_left == Some(0.0));
                 return (image, replies);
             }
             assert!(progress.percent() < 100);

@@ -128,6 +128,7 @@ impl Work<'_> {
         let pixels = |tiles: &[Tile]| tiles.iter().map(Tile::pixels).sum::<u64>();
         let all = pixels(&tiles) + pixels(&bands);
         let watcher = Watcher::new(all, typed.progress, false);
+        watcher.tile_finished(&Progress { finished_pixels: 0, total_pixels: all });
         let Sheet { picture: film, layers } = sheet;
         let (film, layers) = (Mutex::new(film), Mutex::new(layers));
         let of_tiles = OfPart { watcher: &watcher, before: 0, all };

@@ -61,7 +61,8 @@ impl Job {
         let film = picture.film()?;
         let left = middle_first(picture.tiles(), request.options.window());
         let shown = vec![0; film.image().width() * film.image().height() * 4];
-        let (parts, meter) = (Some(picture.into_parts()), Meter::new());
+        let (parts, mut meter) = (Some(picture.into_parts()), Meter::new());
+        meter.advance(&film.progress());
         let lent = Vec::new();
         Ok(Self { request, parts, film, looks: 0, left, lent, shown, meter, last_shown: None })
     }
