@@ -6,16 +6,34 @@ use dotray::image::Format;
 use dotray::image::ImageError;
 use dotray::image::Limits;
 use dotray::image::decode;
+use dotray::render::Fingerprint;
 use dotray::render::Options;
 use std::path::Path;
 
 use crate::exit::Failure;
 
+/// The picture behind, and what it is recognised by.
+#[derive(Clone, Debug)]
+pub struct Back {
+    /// The picture.
+    pub image: Image,
+    /// A hash of its file.
+    hash: Fingerprint,
+}
+
 /// Reads the picture.
-pub fn load(path: &Path, limits: &Limits) -> Result<Image, Failure> {
+pub fn load(path: &Path, limits: &Limits) -> Result<Back, Failure> {
     let bytes = std::fs::read(path).map_err(|error| Failure::file("read", path, &error))?;
-    decode(&bytes, Format::from_path(path).ok(), limits)
-        .map_err(|error| Failure::file("decode", path, &error))
+    let image = decode(&bytes, Format::from_path(path).ok(), limits)
+        .map_err(|error| Failure::file("decode", path, &error))?;
+    Ok(Back { image, hash: Fingerprint::default().with_hash_of("background image", &bytes) })
+}
+
+impl Back {
+    /// What a picture with this one behind it depends on.
+    pub fn added_to(&self, fingerprint: Fingerprint) -> Fingerprint {
+        self.hash.entries().iter().fold(fingerprint, |all, (name, value)| all.with(name, value))
+    }
 }
 
 /// `front` with `back`, stretched over the whole picture, showing through where `front` lets it.

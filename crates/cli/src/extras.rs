@@ -4,13 +4,16 @@ use dotray::Image;
 use dotray::image::Format;
 use dotray::image::encode;
 use dotray::image::encode_exr_layers;
+use dotray::render::Fingerprint;
 use dotray::render::LayerPicture;
 use dotray::render::World;
 use dotray::scene::Resolved;
 use dotray::scene::Sources;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::background;
+use crate::background::Back;
 use crate::exit::Failure;
 use crate::layer_args::Background;
 use crate::layer_args::Overlay;
@@ -24,21 +27,31 @@ use crate::tree::Tree;
 
 /// What must be known before the scene is baked.
 pub struct Extras {
-    back: Option<Image>,
+    back: Option<Arc<Back>>,
     wires: Vec<Wire>,
 }
 
+/// Reads the picture that lies behind, where there is one.
+pub fn back(plan: &Plan) -> Result<Option<Arc<Back>>, Failure> {
+    match &plan.background {
+        None | Some(Background::Transparent | Background::Color(_)) => Ok(None),
+        Some(Background::Image(path)) => {
+            background::load(path, &plan.prepare.image_limits).map(|back| Some(Arc::new(back)))
+        }
+    }
+}
+
 impl Extras {
-    /// Puts the background into the scene, reads its picture, and finds the boxes that are to be drawn.
-    pub fn new(plan: &Plan, resolved: &mut Resolved, sources: &Sources) -> Result<Self, Failure> {
-        let back = match &plan.background {
-            None | Some(Background::Transparent) => None,
-            Some(Background::Color(color)) => {
-                (resolved.background, resolved.secondary_background) = (*color, *color);
-                None
-            }
-            Some(Background::Image(path)) => Some(background::load(path, &plan.prepare.image_limits)?),
-        };
+    /// Puts the background into the scene, and finds the boxes that are to be drawn.
+    pub fn new(
+        plan: &Plan,
+        resolved: &mut Resolved,
+        sources: &Sources,
+        back: Option<Arc<Back>>,
+    ) -> Result<Self, Failure> {
+        if let Some(Background::Color(color)) = plan.background {
+            (resolved.background, resolved.secondary_background) = (color, color);
+        }
         for path in layer_paths(plan) {
             output::check(&Place::File(path), &plan.input)?;
         }
@@ -50,10 +63,32 @@ impl Extras {
         Ok(Self { back, wires })
     }
 
+    /// What a picture depends on, with what lies behind, beside and over it.
+    pub fn added_to(&self, fingerprint: Fingerprint, plan: &Plan) -> Fingerprint {
+        let mut all = layers::with_layers(fingerprint, &plan.layers);
+        if let Some(back) = &self.back {
+            all = back.added_to(all);
+        }
+        let drawn = match plan.overlay {
+            None => return all,
+            Some(Overlay::Bounds) => Overlay::Bounds.word().to_owned(),
+            // Its boxes are seen, so that it does matter which it is.
+            Some(Overlay::Accel) => {
+                let (accel, build) = (plan.prepare.accel.name(), plan.build.word());
+                format!("{} ({accel}, {build})", Overlay::Accel.word())
+            }
+        };
+        all = all.with("overlay", &drawn);
+        match plan.overlay_levels {
+            usize::MAX => all,
+            levels => all.with("overlay levels", &levels.to_string()),
+        }
+    }
+
     /// The picture with what lies behind and over it.
     pub fn apply(&self, image: Image, world: &World, plan: &Plan) -> Result<Image, Failure> {
         let mut image = match &self.back {
-            Some(back) => background::composed(&image, back, &plan.options)?,
+            Some(back) => background::composed(&image, &back.image, &plan.options)?,
             None => image,
         };
         let accelerator = match plan.overlay {

@@ -5,9 +5,9 @@ use dotray::render::Fingerprint;
 use dotray::render::LayerFilm;
 use dotray::render::TileFile;
 use dotray::render::TilePixels;
+use dotray::render::progress::SavedKind;
 use dotray::render::tile_file::Known;
 use dotray::render::tile_file::fingerprint_of;
-use serde_json::json;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -129,10 +129,7 @@ impl Keep {
             Ok(()) => {
                 state.failed = false;
                 tracing::debug!("finished tiles are in {}", self.path.display());
-                events::emit(
-                    "saved",
-                    json!({ "kind": "checkpoint", "file": self.path.display().to_string() }),
-                );
+                events::saved(SavedKind::Checkpoint, &self.path);
             }
             Err(error) => {
                 if !state.failed {
@@ -187,7 +184,8 @@ fn load(path: &Path, fingerprint: &Fingerprint, films: &Films) -> Result<TileFil
     if !differences.is_empty() {
         let list = differences.join("; ");
         return Err(Failure::Failed(format!(
-            "the checkpoint `{name}` belongs to another picture ({list}); delete it to begin anew"
+            "the checkpoint `{name}` belongs to another picture ({list}); \
+             go on with what it was begun with, or delete it to begin anew"
         )));
     }
     let mut file = TileFile::open(path, fingerprint).map_err(fault)?;

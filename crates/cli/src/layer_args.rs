@@ -73,6 +73,16 @@ pub enum Overlay {
     Accel,
 }
 
+impl Overlay {
+    /// As it is typed.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Bounds => "bounds",
+            Self::Accel => "accel",
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

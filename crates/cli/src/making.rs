@@ -13,7 +13,8 @@ use dotray::render::TilePixels;
 use dotray::render::World;
 use dotray::render::develop;
 use dotray::render::develop_layers;
-use serde_json::json;
+use dotray::render::progress::Extent;
+use dotray::render::progress::SavedKind;
 use std::sync::Condvar;
 use std::sync::Mutex;
 use std::sync::PoisonError;
@@ -106,7 +107,7 @@ impl Work<'_> {
         output::write(&self.plan.output, &encode(&image, self.plan.format, &self.plan.encode)?)?;
         tracing::debug!("wrote the picture so far");
         if let Place::File(path) = &self.plan.output {
-            events::emit("saved", json!({ "kind": "partial", "file": path.display().to_string() }));
+            events::saved(SavedKind::Partial, path);
         }
         Ok(())
     }
@@ -188,14 +189,18 @@ impl Work<'_> {
     }
 }
 
-/// Tells programs how large a picture or its layers are, and how much of it a checkpoint has brought.
-fn tell(event: &str, plan: &Plan, tiles: usize, progress: &Progress) {
+/// What programs are told of a picture, or of its layers: how large it is, and how much of it a checkpoint has brought.
+fn extent(plan: &Plan, tiles: usize, progress: &Progress) -> impl FnOnce(f64) -> Extent + use<> {
     let window = plan.options.window();
-    events::emit(
-        event,
-        json!({ "width": window.width, "height": window.height, "tiles": tiles,
-                "finished_pixels": progress.finished_pixels, "total_pixels": progress.total_pixels }),
-    );
+    let Progress { finished_pixels, total_pixels } = *progress;
+    move |seconds| Extent {
+        seconds,
+        width: window.width,
+        height: window.height,
+        tiles: tiles as u64,
+        finished_pixels,
+        total_pixels,
+    }
 }
 
 /// Traces the picture and its layers until the deadline; with a fingerprint, their checkpoint is kept.
@@ -216,7 +221,7 @@ pub fn make(
     };
     let work = Work { picture: &picture, world, plan, extras, films, keep, deadline };
     let progress = work.films.picture().progress();
-    tell("picture", plan, picture.tiles().len(), &progress);
+    events::picture(extent(plan, picture.tiles().len(), &progress));
     work.part(&progress, |overseer| develop(work.picture, &work.films.picture, overseer))?;
     let looking = Instant::now();
     if !plan.layers.is_empty() {
@@ -224,7 +229,7 @@ pub fn make(
             let layers = work.films.layers();
             (layers.bands().len(), layers.progress())
         };
-        tell("layers", plan, bands, &progress);
+        events::layers(extent(plan, bands, &progress));
         work.part(&progress, |overseer| develop_layers(world, &plan.options, &work.films.layers, overseer))?;
     }
     let seconds = looking.elapsed().as_secs_f64();

@@ -1,13 +1,16 @@
 //! Work for many machines: a plan that says which tiles of which frames make up a piece, as JSON.
 
 use clap::Parser;
+use dotray::Image;
 use dotray::render::Antialias;
+use dotray::render::Crop;
 use dotray::render::Film;
 use dotray::render::Fingerprint;
 use dotray::render::Layer;
 use dotray::render::LayerFilm;
 use dotray::render::Options;
 use dotray::render::Shadows;
+use dotray::render::Stats;
 use dotray::render::TextureFilter;
 use dotray::render::Tile;
 use dotray::render::TilePixels;
@@ -197,6 +200,7 @@ pub fn words_of(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
     say("light-samples", light_samples.to_string());
     say("tile-size", tile_size.to_string());
     say("accel", plan.prepare.accel.name().to_owned());
+    say("build", plan.build.word().to_owned());
     say("dialect", typed.reading.dialect.word().to_owned());
     if let Some(most) = typed.max_pixels {
         say("max-pixels", most.to_string());
@@ -204,14 +208,29 @@ pub fn words_of(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
     if !plan.layers.is_empty() {
         say("layers", layers::names(&plan.layers));
     }
-    match &typed.background {
-        Some(Background::Color(color)) => say("background", format!("{},{},{}", color.x, color.y, color.z)),
-        Some(Background::Transparent) => say("background", "transparent".to_owned()),
-        Some(Background::Image(_)) | None => {}
-    }
     match typed.missing_texture {
         MissingTexture::White => say("missing-texture", "white".to_owned()),
         MissingTexture::Error => {}
+    }
+    words.extend(words_around(plan, typed));
+    words
+}
+
+/// The options that say what lies behind and over a picture.
+fn words_around(plan: &Plan, typed: &RenderArgs) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut say = |name: &str, value: String| words.push(format!("--{name}={value}"));
+    match &typed.background {
+        Some(Background::Color(color)) => say("background", format!("{},{},{}", color.x, color.y, color.z)),
+        Some(Background::Transparent) => say("background", "transparent".to_owned()),
+        Some(Background::Image(path)) => say("background", format!("image:{}", path.to_string_lossy())),
+        None => {}
+    }
+    if let Some(overlay) = plan.overlay {
+        say("overlay", overlay.word().to_owned());
+        if let Some(levels) = typed.overlay_levels {
+            say("overlay-levels", levels.to_string());
+        }
     }
     words
 }
@@ -225,8 +244,13 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// All is missing.
-    pub fn new(options: &Options, layers: &[Layer]) -> Result<Self, Failure> {
+    /// All is missing of the pictures that pieces hold: where another one lies behind them, they have no alpha channel
+    /// any more.
+    pub fn new(plan: &Plan, layers: &[Layer]) -> Result<Self, Failure> {
+        let options = match plan.background {
+            Some(Background::Image(_)) => &Options { transparent: false, ..plan.options.clone() },
+            Some(Background::Color(_) | Background::Transparent) | None => &plan.options,
+        };
         Ok(Self { picture: Film::new(options)?, layers: LayerFilm::new(options, layers)? })
     }
 
@@ -266,6 +290,16 @@ impl Sheet {
     }
 }
 
+/// A tile of a picture, of which `window` is stored.
+pub fn cut_out(image: &Image, window: Crop, tile: &Tile) -> TilePixels {
+    let channels = image.channels().count();
+    let (left, top) = ((tile.x - window.x) as usize, (tile.y - window.y) as usize);
+    let rows = image.samples().chunks_exact(image.width() * channels).skip(top).take(tile.height as usize);
+    let part = left * channels..(left + tile.width as usize) * channels;
+    let samples = rows.flat_map(|row| row.get(part.clone()).unwrap_or_default()).copied().collect();
+    TilePixels { tile: *tile, channels: channels as u32, samples, counts: Stats::default() }
+}
+
 /// Cuts tiles into `count` pieces of about the same cost, in order, the last of which are empty where there are fewer
 /// to be made: a scheduler's tasks have numbers of their own, and each finds its piece. `costs` are those of each
 /// picture's tiles.
@@ -297,6 +331,17 @@ pub fn cut(frames: &[Option<u32>], costs: &[&[f64]], count: u32) -> Vec<Piece> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dotray::image::Channels;
+
+    #[test]
+    fn tiles_are_cut_out_where_they_lie() {
+        let samples = (0..24).map(|k| k as f32).collect();
+        let image = Image::from_samples(4, 2, Channels::Rgb, samples).expect("a picture");
+        let window = Crop { x: 10, y: 20, width: 4, height: 2 };
+        let tile = Tile { number: 3, x: 12, y: 21, width: 2, height: 1 };
+        let pixels = cut_out(&image, window, &tile);
+        assert_eq!((pixels.channels, pixels.samples), (3, vec![18.0, 19.0, 20.0, 21.0, 22.0, 23.0]));
+    }
 
     #[test]
     fn pieces_cost_the_same_and_hold_every_tile_once() {

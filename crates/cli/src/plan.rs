@@ -22,6 +22,7 @@ use crate::meaning::Place;
 use crate::render_args::RenderArgs;
 use crate::storage;
 use crate::values::Aa;
+use crate::values::Build;
 use crate::values::TextOrJson;
 
 /// All that `dotray render` is to do.
@@ -49,6 +50,8 @@ pub struct Plan {
     pub overlay: Option<Overlay>,
     /// How many levels of boxes.
     pub overlay_levels: usize,
+    /// The effort of building the accelerator, as it was typed.
+    pub build: Build,
     /// How the work is kept and shown.
     pub long: LongArgs,
     /// Print errors only.
@@ -97,6 +100,7 @@ pub fn plan(typed: &RenderArgs) -> Result<Plan, Failure> {
         layers,
         overlay: typed.overlay,
         overlay_levels: typed.overlay_levels.unwrap_or(usize::MAX),
+        build: typed.build,
         long: typed.long.clone(),
         quiet: typed.quiet,
         stats: typed.stats,

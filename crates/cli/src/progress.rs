@@ -2,11 +2,13 @@
 
 use dotray::render::Observer;
 use dotray::render::Progress;
+use dotray::render::progress::Advance;
+use dotray::render::progress::Meter;
+use dotray::render::progress::Record;
 use indicatif::ProgressBar;
 use indicatif::ProgressDrawTarget;
 use indicatif::ProgressState;
 use indicatif::ProgressStyle;
-use serde_json::json;
 use std::fmt;
 use std::io::IsTerminal;
 use std::sync::Mutex;
@@ -27,9 +29,8 @@ pub struct Watcher {
 
 /// Lines of progress for programs.
 struct Lines {
-    start: Instant,
-    /// Pixels that were there at the start, and when the last line was written.
-    told: Mutex<(Option<u64>, Option<Instant>)>,
+    /// The pace, and when the last line was written.
+    told: Mutex<(Meter, Option<Instant>)>,
 }
 
 /// The eye follows no faster, and each drawing costs a system call.
@@ -43,7 +44,7 @@ impl Watcher {
         let terminal =
             || std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|t| t != "dumb");
         let drawn = !quiet && how == ProgressName::Auto && !log::is_json() && terminal();
-        let lines = || Lines { start: Instant::now(), told: Mutex::default() };
+        let lines = || Lines { told: Mutex::new((Meter::new(), None)) };
         Self { bar: drawn.then(|| bar(pixels)), lines: (how == ProgressName::Json).then(lines) }
     }
 
@@ -57,28 +58,17 @@ impl Watcher {
 
 impl Lines {
     fn tell(&self, progress: &Progress) {
-        let Progress { finished_pixels, total_pixels } = *progress;
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        let before = *told.0.get_or_insert(finished_pixels);
+        let (meter, last) = &mut *told;
+        let advance = meter.advance(progress);
         let now = Instant::now();
-        let soon = told.1.is_some_and(|last| now.duration_since(last) < BETWEEN_LINES);
-        if soon && finished_pixels < total_pixels {
+        let soon = last.is_some_and(|last| now.duration_since(last) < BETWEEN_LINES);
+        if soon && progress.finished_pixels < progress.total_pixels {
             return;
         }
-        told.1 = Some(now);
-        let seconds = now.duration_since(self.start).as_secs_f64();
-        let rate = if seconds > 0.0 {
-            (finished_pixels - before.min(finished_pixels)) as f64 / seconds
-        } else {
-            0.0
-        };
-        let left = total_pixels.saturating_sub(finished_pixels) as f64;
-        let seconds_left = (rate > 0.0).then(|| left / rate);
-        events::emit(
-            "progress",
-            json!({ "finished_pixels": finished_pixels, "total_pixels": total_pixels, "pixels_per_second": rate,
-                    "seconds_left": seconds_left }),
-        );
+        *last = Some(now);
+        // Seconds count from the start of the program in all lines.
+        events::tell(|seconds| Record::Progress(Advance { seconds, ..advance }));
     }
 }
 

@@ -1,7 +1,6 @@
 //! A scene that moves: its world, frame by frame.
 
 use dotray::render::Fingerprint;
-use dotray::render::Layer;
 use dotray::render::Textures;
 use dotray::render::World;
 use dotray::render::on_threads;
@@ -10,17 +9,20 @@ use dotray::scene::Scene;
 use dotray::scene::model::Camera;
 use dotray::scene::resolve::resolve_within;
 use dotray::scene::sources::Sources;
+use std::sync::Arc;
 use std::time::Instant;
 
+use crate::background::Back;
 use crate::exit::Failure;
 use crate::extras::Extras;
+use crate::extras::back;
 use crate::groups::find;
 use crate::groups::groups_of;
 use crate::input;
 use crate::input::TimedDisk;
 use crate::input::Written;
 use crate::keyframes::Animation;
-use crate::layers::with_layers;
+use crate::layer_args::Overlay;
 use crate::limits;
 use crate::messages::Messages;
 use crate::plan::Plan;
@@ -43,6 +45,8 @@ pub struct Stage<'a> {
     told: bool,
     sources: Sources,
     disk: TimedDisk,
+    /// What lies behind all pictures, read once.
+    back: Option<Arc<Back>>,
     /// The scene's camera, where the animation says nothing.
     camera: Camera,
     /// What was decoded for the fingerprint and no world has yet.
@@ -138,6 +142,7 @@ impl<'a> Stage<'a> {
             told: false,
             sources,
             disk,
+            back: back(plan)?,
             textures: None,
             world: None,
             extras: None,
@@ -178,19 +183,19 @@ impl<'a> Stage<'a> {
             input::whiten(resolved, &self.disk, self.plan.quiet || self.told);
             self.told = true;
         }
-        Extras::new(self.plan, resolved, &self.sources)
+        Extras::new(self.plan, resolved, &self.sources, self.back.clone())
     }
 
-    /// What pictures of the scene depend on, where nothing has moved, and what they all have besides: layers, and the
-    /// text of an animation. Asked for before the first frame.
-    pub fn fingerprint(&mut self, layers: &[Layer], animation: Option<&str>) -> Result<Fingerprint, Failure> {
+    /// What pictures of the scene depend on, where nothing has moved, and what they all have besides: what `plan` says
+    /// lies behind, beside and over them, and the text of an animation. Asked for before the first frame.
+    pub fn fingerprint(&mut self, plan: &Plan, animation: Option<&str>) -> Result<Fingerprint, Failure> {
         let mut resolved = self.still.take().ok_or(Failure::Reported)?;
-        self.complete(&mut resolved)?;
+        let extras = self.complete(&mut resolved)?;
         let textures = self.load_textures(&resolved)?;
         let fingerprint = Fingerprint::of(&resolved, &textures, &self.plan.options);
         self.textures = Some(textures);
         self.still = Some(resolved);
-        let fingerprint = with_layers(fingerprint, layers);
+        let fingerprint = extras.added_to(fingerprint, plan);
         Ok(match animation {
             Some(text) => fingerprint.with_hash_of("animation", text.as_bytes()),
             None => fingerprint,
@@ -238,7 +243,9 @@ impl<'a> Stage<'a> {
     /// The world of a scene, made of the one before it where there is one.
     fn built(&mut self, before: Option<World>, resolved: Resolved) -> Result<World, Failure> {
         let world = if let Some(world) = before {
-            world.moved(resolved, &self.plan.prepare, !self.pace.rebuilds())
+            // Where its boxes are seen, they must not depend on what was measured.
+            let seen = self.plan.overlay == Some(Overlay::Accel);
+            world.moved(resolved, &self.plan.prepare, !seen && !self.pace.rebuilds())
         } else {
             let limits = &self.typed.reading.limits;
             limits::check(&resolved, &self.plan.prepare, Some(&self.plan.options), limits)?;

@@ -374,6 +374,9 @@ fn progress_is_json_as_its_page_says() {
 #[test]
 fn what_the_page_does_not_say_is_found() {
     let page = described();
+    let text = std::fs::read_to_string(common::root().join("docs/progress.md")).expect("the page");
+    let shown = text.split("```json\n").nth(1).and_then(|rest| rest.split("```").next()).expect("lines");
+    assert_eq!(events_of(shown).len(), 3);
     assert!(page.0.len() == 7 && page.1.len() > 15, "{page:?}");
     let fine = serde_json::json!({ "event": "end", "seconds": 0.5, "outcome": "done", "exit": 0 });
     validate(&fine, &page);

@@ -89,7 +89,6 @@ fn what_is_missing_or_wrong_is_told_by_number() {
     folder.put("c.plan", b"{}");
     folder.run("work c.plan --piece 0 -o pieces").expect(1).says("is no plan");
     folder.run("plan - -o a.plan --pieces 2").expect(2).says("a scene with a name");
-    folder.run("plan balls.ray -o a.plan --pieces 2 --overlay bounds").expect(2).says("--overlay");
     // A scheduler's tasks have numbers of their own: where tiles do not suffice, pieces are empty.
     folder.run(&format!("plan balls.ray -o d.plan --pieces 900 {OPTIONS}")).expect(0);
     assert_eq!(count(&folder, "d.plan"), 900);
@@ -145,6 +144,138 @@ fn layers_are_split_and_joined_like_the_picture() {
         "layers: depth,normal,shadow,reflected,boxtests in the piece, depth,normal,shadow,reflected in the",
     );
     folder.run("merge a.plan pieces -o - --format png").expect(2).says("--layers on standard output needs");
+}
+
+/// A picture of every colour, in which each pixel differs from its neighbours, to lie behind others.
+fn put_sky(folder: &Folder) {
+    let (width, height) = (61, 47);
+    let mut bytes = format!("P6\n{width} {height}\n255\n").into_bytes();
+    for y in 0..height {
+        bytes
+            .extend((0..width).flat_map(|x: u32| [4 * x, 5 * y, 7 * (x + y) % 256].map(|level| level as u8)));
+    }
+    folder.put("sky.ppm", &bytes);
+}
+
+#[test]
+fn what_lies_behind_and_over_a_picture_is_split_and_joined_with_it() {
+    let crop = "--crop 20,30,101,77";
+    for more in [
+        "--overlay bounds",
+        "--overlay accel --overlay-levels 2 --build best --accel octree",
+        "--background image:sky.ppm",
+        &format!("--background image:sky.ppm --overlay bounds --layers st,depth {crop}"),
+        &format!("--background transparent --overlay accel {crop}"),
+    ] {
+        let folder = Folder::new();
+        put_sky(&folder);
+        folder.run(&format!("render balls.ray whole.png {OPTIONS} {more}")).expect(0);
+        folder.run(&format!("render balls.ray plain.png {OPTIONS} {}", crop_of(more))).expect(0);
+        assert!(folder.get("whole.png") != folder.get("plain.png"), "{more} shows nothing");
+        folder.run(&format!("plan balls.ray -o a.plan --pieces 5 {OPTIONS} {more}")).expect(0);
+        (0..5).for_each(|n| drop(folder.run(&format!("work a.plan --piece {n} -o pieces")).expect(0)));
+        folder.run("work a.plan --piece 3 -o pieces").expect(0).says("piece 3 is there already");
+        // The merge needs none of the files that pieces were made of.
+        for name in ["balls.ray", "sky.ppm"] {
+            std::fs::rename(folder.path(name), folder.path(&format!("{name}.away"))).expect("a file");
+        }
+        folder.run("merge a.plan pieces -o merged.png").expect(0);
+        for name in ["balls.ray", "sky.ppm"] {
+            std::fs::rename(folder.path(&format!("{name}.away")), folder.path(name)).expect("a file");
+        }
+        assert!(folder.get("merged.png") == folder.get("whole.png"), "{more}");
+        if more.contains("st,depth") {
+            assert!(folder.get("merged.st.png") == folder.get("whole.st.png"));
+        }
+        // Neither does it matter whether the picture was made in one go.
+        let slow = OPTIONS.replace("adaptive", "grid=9");
+        let kept = format!("render balls.ray kept.png {slow} {more} --checkpoint c.tiles --resume");
+        folder.run(&format!("{kept} --time-limit 3ms --threads 1")).expect(4);
+        folder.run(&kept).expect(0);
+        folder.run(&format!("render balls.ray whole.png {slow} {more}")).expect(0);
+        assert!(folder.get("kept.png") == folder.get("whole.png"), "{more}");
+    }
+}
+
+/// The part of the options that cuts the picture.
+fn crop_of(options: &str) -> String {
+    options.find("--crop").map_or_else(String::new, |at| options[at..].to_owned())
+}
+
+#[test]
+fn another_picture_behind_and_other_boxes_are_named() {
+    let folder = Folder::new();
+    put_sky(&folder);
+    let behind = "--background image:sky.ppm --overlay bounds";
+    folder.run(&format!("plan balls.ray -o a.plan --pieces 2 {OPTIONS} {behind}")).expect(0);
+    folder.run("work a.plan --piece 0 -o pieces").expect(0);
+    let slow = OPTIONS.replace("adaptive", "grid=20");
+    let kept = format!("render balls.ray kept.png {slow} --checkpoint c.tiles --resume");
+    folder.run(&format!("{kept} {behind} --time-limit 1ms")).expect(4);
+    for (other, said) in [
+        ("--background image:sky.ppm", "overlay: only in the piece"),
+        ("--overlay bounds", "background image: only in the piece"),
+        (&format!("{behind} --overlay-levels 1"), "overlay levels: only in the plan"),
+        (
+            "--background image:sky.ppm --overlay accel",
+            "overlay: bounds in the piece, accel (bvh, balanced) in the",
+        ),
+    ] {
+        folder.run(&format!("plan balls.ray -o b.plan --pieces 2 {OPTIONS} {other}")).expect(0);
+        folder.run("merge b.plan pieces -o merged.png").expect(1).says(said);
+        let said =
+            said.replace("in the piece", "there").replace("in the plan", "now").replace("in the", "now");
+        folder.run(&format!("{kept} {other}")).expect(1).says(&said);
+    }
+    // One level of one pixel is another.
+    let mut sky = folder.get("sky.ppm");
+    *sky.last_mut().expect("a pixel") ^= 1;
+    folder.put("sky.ppm", &sky);
+    let refused = folder.run("work a.plan --piece 1 -o pieces").expect(1);
+    refused.says("the plan `a.plan` is of another picture (background image differ)");
+    let refused = folder.run(&format!("{kept} {behind}")).expect(1);
+    refused.says("belongs to another picture (background image differ)");
+    std::fs::remove_file(folder.path("sky.ppm")).expect("a file");
+    folder.run("work a.plan --piece 1 -o pieces").expect(1).says("cannot read `sky.ppm`");
+}
+
+/// Balls, every other one in a group that moves among the others, so that a tree that is fitted to it is another than
+/// one that is built.
+fn swarm() -> String {
+    let ball = |k: usize| {
+        let at = |step: usize, edge: usize| 0.3 * (k * step % edge) as f64 - 0.15 * edge as f64;
+        format!("#shape_sphere 0 {} {} {} .1\n", at(1, 11), at(3, 13), at(5, 7))
+    };
+    let of = |first: usize| (first..160).step_by(2).map(ball).collect::<String>();
+    let head = common::BALLS.split("#group_begin").next().unwrap_or_default();
+    let head = head.replace("0 0 4 0 0 -1", "0 0 6 0 0 -1");
+    let unit = "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1";
+    format!("{head}#group_begin {unit}\n{}#group_end\n{}", of(0), of(1))
+}
+
+#[test]
+fn boxes_of_groups_that_move_are_those_of_their_frame() {
+    let folder = Folder::new();
+    put_sky(&folder);
+    folder.put("swarm.ray", swarm().as_bytes());
+    folder.put("move.toml", b"[[group]]\ngroup = \"0\"\n[group.turntable]\nframes = 9\ncenter = [1, 0, 0]\n");
+    for overlay in ["bounds", "accel"] {
+        let options = format!(
+            "--animation move.toml --frames 1-4 --size 200x150 --overlay {overlay} --background image:sky.ppm"
+        );
+        folder.run(&format!("animate swarm.ray {options} -o {overlay}.##.png")).expect(0);
+        folder.run(&format!("plan swarm.ray {options} -o {overlay}.plan --pieces 4")).expect(0);
+        let work = |n: usize| folder.run(&format!("work {overlay}.plan --piece {n} -o {overlay}")).expect(0);
+        // Each in a process of its own, which begins at another frame.
+        (0..4).for_each(|n| drop(work(n)));
+        folder.run(&format!("merge {overlay}.plan {overlay} -o joined.{overlay}.##.png")).expect(0);
+        let frame = |frame: usize| format!("{overlay}.{frame:02}.png");
+        for number in 1..=4 {
+            let one = folder.get(&frame(number));
+            assert!(one == folder.get(&format!("joined.{}", frame(number))), "{overlay}, frame {number}");
+            assert!(number == 1 || one != folder.get(&frame(number - 1)), "{overlay}, frame {number}");
+        }
+    }
 }
 
 #[test]

@@ -7,6 +7,8 @@ mod arrays;
 
 mod signals;
 
+mod records;
+
 mod files;
 
 mod messages;
@@ -59,6 +61,8 @@ mod _dotray {
     #[pymodule_export]
     use crate::pieces::work;
     #[pymodule_export]
+    use crate::records::Meter;
+    #[pymodule_export]
     use crate::solids::add_boxes;
     #[pymodule_export]
     use crate::solids::add_cones;
@@ -70,6 +74,10 @@ mod _dotray {
     use crate::solids::add_triangles;
     #[pymodule_export]
     use crate::world::World;
+
+    /// The version of the records of progress.
+    #[pymodule_export]
+    const PROGRESS_SCHEMA: u32 = dotray_render::progress::SCHEMA;
 
     /// The version of the package.
     #[pymodule_export]

@@ -9,6 +9,7 @@ use crate::explain;
 use crate::options::Choices;
 use crate::options::threads;
 use crate::pictures::into_array;
+use crate::records::Teller;
 use crate::signals::watched;
 use crate::view::CameraNumbers;
 use crate::view::LightNumbers;
@@ -16,14 +17,17 @@ use crate::view::camera;
 use crate::view::light;
 use dotray_geometry::Vec3;
 use dotray_render::Layer;
+use dotray_render::LayerFilm;
 use dotray_render::LayerPicture;
 use dotray_render::Observer;
 use dotray_render::Progress;
 use dotray_render::RenderError;
 use dotray_render::Stats;
 use dotray_render::camera::Camera;
+use dotray_render::progress::Record;
 use dotray_render::render;
 use dotray_render::render_layers;
+use dotray_render::tile::tiles;
 use dotray_render::trace::Tracer;
 use dotray_scene::model::Light;
 use numpy::IntoPyArray;
@@ -76,13 +80,12 @@ impl Observer for Watch {
 }
 
 impl Watch {
-    /// Tells Python how far it has come.
-    fn tell(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
-        let total = self.total.load(Ordering::Relaxed);
-        if let Some(progress) = progress.filter(|_| total > 0) {
-            progress.call1(py, (self.finished.load(Ordering::Relaxed), total))?;
+    /// How far it has come.
+    fn progress(&self) -> Progress {
+        Progress {
+            finished_pixels: self.finished.load(Ordering::Relaxed),
+            total_pixels: self.total.load(Ordering::Relaxed),
         }
-        Ok(())
     }
 }
 
@@ -228,19 +231,27 @@ impl World {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray3<f32>>, Bound<'py, PyDict>)> {
         let (options, lit, watch) = (choices.options()?, lighting(light)?, Watch::default());
-        let tick = |py: Python<'_>| watch.tell(py, progress.as_ref());
+        options.validate().map_err(render_fault)?;
+        let mut teller = Teller::new(progress.as_ref(), 0.0);
+        let window = options.window();
+        teller.begin(py, Record::Picture, [window.width, window.height], tiles(&options).len())?;
+        let tick = |py: Python<'_>| teller.tell(py, &watch.progress());
         let rendering = watched(py, &watch.cancel, tick, || {
             let mut world = self.locked();
             set_view(&mut world, camera, lit);
             render(&world, &options, &watch)
         })?;
         let rendering = rendering.map_err(render_fault)?;
-        watch.tell(py, progress.as_ref())?;
+        teller.tell(py, &watch.progress())?;
         Ok((into_array(py, rendering.image)?, figures(py, &rendering.stats)?))
     }
 
-    /// Layers of a picture by name, each with its channels' names.
-    #[pyo3(signature = (choices, names, camera=None, light=None, progress=None))]
+    /// Layers of a picture by name, each with its channels' names; the work has begun so many seconds ago.
+    #[pyo3(signature = (choices, names, camera=None, light=None, progress=None, since=0.0))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "each is a choice of its own, and the Python half names them"
+    )]
     fn layers<'py>(
         &self,
         py: Python<'py>,
@@ -249,16 +260,23 @@ impl World {
         camera: Option<CameraNumbers>,
         light: Option<LightChoice>,
         progress: Option<Py<PyAny>>,
+        since: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let wanted = layers_of(&names)?;
         let (options, lit, watch) = (choices.options()?, lighting(light)?, Watch::default());
-        let tick = |py: Python<'_>| watch.tell(py, progress.as_ref());
+        let bands = LayerFilm::new(&options, &wanted).map_err(render_fault)?.bands().len();
+        let mut teller = Teller::new(progress.as_ref(), since);
+        let window = options.window();
+        teller.begin(py, Record::Layers, [window.width, window.height], bands)?;
+        let tick = |py: Python<'_>| teller.tell(py, &watch.progress());
         let layers = watched(py, &watch.cancel, tick, || {
             let mut world = self.locked();
             set_view(&mut world, camera, lit);
             render_layers(&world, &options, &wanted, &watch)
         })?;
-        layer_arrays(py, layers.map_err(render_fault)?.unwrap_or_default())
+        let layers = layers.map_err(render_fault)?.unwrap_or_default();
+        teller.tell(py, &watch.progress())?;
+        layer_arrays(py, layers)
     }
 
     /// Why the ray through a place of the picture (in pixels from the upper left) has its colour.

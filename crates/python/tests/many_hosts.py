@@ -25,8 +25,8 @@ def film(executor, folder, middle=None, **options):
     cameras = [dotray.Camera.look_at((4 * np.sin(a) + 0.5, 0.5, 4 * np.cos(a) + 0.5), (0.5, 0.5, 0.5)) for a in angles]
     fired = []
 
-    def watch(finished, total):
-        if middle is not None and not fired and finished * 4 >= total:
+    def watch(record):
+        if middle is not None and not fired and 4 * record["finished_pixels"] >= record["total_pixels"]:
             fired.append(time.monotonic())
             middle()
 

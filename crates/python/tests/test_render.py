@@ -287,8 +287,18 @@ def test_progress_is_told_and_an_error_in_it_stops():
     random = np.random.default_rng(0)
     scene.add_spheres(random.random((1000, 3)), 0.02)
     told = []
-    scene.render(400, 300, aa=3, progress=lambda *now: told.append(now))
-    assert told[-1] == (120000, 120000) and all(a <= b for (a, _), (b, _) in zip(told, told[1:]))
+    scene.render(400, 300, aa=3, layers=["depth"], crop=(10, 20, 300, 200), progress=told.append)
+    events = [record["event"] for record in told]
+    assert events[0] == "picture" and set(events) == {"picture", "layers", "progress"}
+    middle = events.index("layers")
+    for part in (told[:middle], told[middle:]):
+        begun, *steps = part
+        assert begun["total_pixels"] == 60000 and (begun["width"], begun["height"]) == (300, 200)
+        finished = [record["finished_pixels"] for record in steps]
+        assert finished == sorted(finished) and finished[-1] == 60000
+        assert steps[-1]["seconds_left"] == 0 and steps[-1]["pixels_per_second"] > 0
+    seconds = [record["seconds"] for record in told]
+    assert seconds == sorted(seconds)
 
     def refuse(*_):
         raise KeyError("enough")

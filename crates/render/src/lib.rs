@@ -17,6 +17,8 @@ pub mod tile;
 
 pub mod observer;
 
+pub mod progress;
+
 pub mod estimate;
 
 pub mod camera;

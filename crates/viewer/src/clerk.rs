@@ -128,13 +128,12 @@ impl Clerk {
 
     fn tell(&mut self, reply: Reply) -> Option<Tell> {
         let tell = match reply {
-            Reply::Picture { serial, size, pixels, done, seconds, image } => Tell::Picture(Box::new(Sent {
+            Reply::Picture { serial, size, pixels, progress, image } => Tell::Picture(Box::new(Sent {
                 serial,
                 size: size.map(|edge| u32::try_from(edge).unwrap_or(u32::MAX)),
                 pixels: Arc::unwrap_or_clone(pixels),
                 differs: false,
-                done,
-                seconds,
+                progress,
                 film: image.map(|image| bytemuck::cast_slice(image.samples()).to_vec()),
             })),
             Reply::Seen(seen) => return Some(Tell::Seen(seen)),

@@ -24,6 +24,7 @@ use dotray_render::PrepareOptions;
 use dotray_render::TilePixels;
 use dotray_render::World;
 use dotray_render::camera::Camera;
+use dotray_render::progress::Advance;
 use dotray_render::trace::Tracer;
 use dotray_scene::Resolved;
 use dotray_scene::model;
@@ -107,10 +108,8 @@ pub enum Reply {
         size: [usize; 2],
         /// The pixels; alpha 0 where nothing is known yet.
         pixels: Arc<Vec<u8>>,
-        /// The part of the work that is done, 1 at the end.
-        done: f32,
-        /// Seconds since the request came.
-        seconds: f64,
+        /// How far it has come since the request came: the record `progress` of docs/progress.md.
+        progress: Advance,
         /// The finished picture.
         image: Option<Arc<Image>>,
     },

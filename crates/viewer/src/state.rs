@@ -24,6 +24,7 @@ use dotray_image::Format;
 use dotray_image::Image;
 use dotray_render::Options;
 use dotray_render::PrepareOptions;
+use dotray_render::progress::Advance;
 use dotray_scene::Resolved;
 use dotray_scene::model::Camera;
 use dotray_scene::span::FileId;
@@ -48,10 +49,8 @@ pub enum Mode {
 pub struct Traced {
     /// The request that it answers.
     pub request: Request,
-    /// The part of it that is done.
-    pub done: f32,
-    /// Seconds that it has taken.
-    pub seconds: f64,
+    /// How far it has come.
+    pub progress: Advance,
     /// The finished picture.
     pub image: Option<Arc<Image>>,
     /// The pixels on the screen; `None` before the first have come.
@@ -250,12 +249,12 @@ impl State {
 
     fn reply(&mut self, reply: Reply, ctx: &egui::Context) {
         match reply {
-            Reply::Picture { serial, size, pixels, done, seconds, image } => {
+            Reply::Picture { serial, size, pixels, progress, image } => {
                 let Some(traced) = self.traced.as_mut().filter(|traced| traced.request.serial == serial)
                 else {
                     return;
                 };
-                (traced.done, traced.seconds, traced.image) = (done, seconds, image);
+                (traced.progress, traced.image) = (progress, image);
                 let shown = egui::ColorImage::from_rgba_premultiplied(size, &pixels);
                 match &mut traced.texture {
                     Some(texture) => texture.set(shown, egui::TextureOptions::NEAREST),
@@ -327,7 +326,7 @@ impl State {
         }
         if let Some(request) = self.request(true) {
             self.link.send(Command::Draw(Box::new(request.clone())));
-            self.traced = Some(Traced { request, done: 0.0, seconds: 0.0, image: None, texture: None });
+            self.traced = Some(Traced { request, progress: Advance::default(), image: None, texture: None });
         }
     }
 

@@ -8,6 +8,7 @@ use crate::hidden::Hidden;
 use crate::rays::RayRow;
 use dotray_geometry::Vec3;
 use dotray_render::TilePixels;
+use dotray_render::progress::Advance;
 use dotray_scene::Resolved;
 use dotray_scene::model::Light;
 use dotray_scene::resolved::ResolvedMaterial;
@@ -123,10 +124,8 @@ pub struct Sent {
     pub pixels: Vec<u8>,
     /// Whether it is the difference.
     pub differs: bool,
-    /// The part of the work that is done.
-    pub done: f32,
-    /// Seconds since the request came.
-    pub seconds: f64,
+    /// How far it has come since the request came: the record `progress` of docs/progress.md.
+    pub progress: Advance,
     /// The finished picture: samples of its channels in the machine's own order of bytes, which is the same everywhere.
     pub film: Option<Vec<u8>>,
 }
@@ -274,6 +273,17 @@ mod tests {
         let ask = Ask::Look(Box::new(request), 1.0 / 3.0, -0.0);
         let wire = packed(&bytes(&ask));
         assert_eq!(message::<Ask>(&unpacked(&wire).unwrap()).unwrap(), ask);
+        for seconds_left in [None, Some(0.1 + 0.2)] {
+            let progress = Advance {
+                seconds: 1.5,
+                finished_pixels: 7,
+                total_pixels: u64::MAX,
+                pixels_per_second: 1.0 / 3.0,
+                seconds_left,
+            };
+            let tell = Tell::Picture(Box::new(Sent { serial: 7, progress, ..Sent::default() }));
+            assert_eq!(message::<Tell>(&bytes(&tell)).unwrap(), tell);
+        }
         let tell = Tell::Notice("x".repeat(100_000));
         let wire = packed(&bytes(&tell));
         assert!(wire.len() < 2000);

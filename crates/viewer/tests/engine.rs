@@ -43,14 +43,15 @@ fn request(world: &World, serial: u64, options: Options) -> Box<Request> {
 fn finish(engine: &mut Engine, serial: u64) -> (Arc<Image>, usize) {
     let mut replies = 0;
     loop {
-        if let Some(Reply::Picture { serial: of, image, done, .. }) = engine.advance() {
+        if let Some(Reply::Picture { serial: of, image, progress, .. }) = engine.advance() {
             assert_eq!(of, serial);
             replies += 1;
             if let Some(image) = image {
-                assert!(done == 1.0 && !engine.is_busy());
+                assert!(progress.percent() == 100 && !engine.is_busy());
+                assert!(progress.pixels_per_second > 0.0 && progress.seconds_left == Some(0.0));
                 return (image, replies);
             }
-            assert!(done < 1.0);
+            assert!(progress.percent() < 100);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use dotray::render::Rendering;
 use dotray::render::Stats;
-use serde_json::json;
+use dotray::render::progress::SavedKind;
 use std::fs;
 use std::path::Path;
 use std::time::Instant;
@@ -77,14 +77,14 @@ pub fn run(typed: &AnimateArgs, color: When) -> Result<(), Failure> {
         let mut animate =
             Animate { stage: Stage::new(&plan, &typed.render, messages, animation)?, plan: &plan };
         for (index, (frame, path)) in missing.iter().enumerate() {
-            events::emit("frame", json!({ "frame": frame, "frames": missing.len() }));
+            events::frame(*frame, missing.len());
             animate.frame(*frame, path, deadline).map_err(|failure| stopped(failure, there + index, all))?;
         }
     }
     if let Some(movie) = &typed.movie {
         interrupt::check()?;
         movie::join(movie, &pattern, typed.frames, typed.fps)?;
-        events::emit("saved", json!({ "kind": "movie", "file": movie.display().to_string() }));
+        events::saved(SavedKind::Movie, movie);
     }
     Ok(())
 }
@@ -122,7 +122,7 @@ impl Animate<'_> {
             output::write(&Place::File(path), &bytes)?;
         }
         output::write(&plan.output, &picture)?;
-        events::emit("saved", json!({ "kind": "frame", "file": path.display().to_string() }));
+        events::saved(SavedKind::Frame, path);
         let Stats { box_tests, shape_tests, .. } = stats;
         self.stage.traced(stats.rays(), box_tests + shape_tests, seconds);
         tracing::debug!(frame, seconds, "a frame is there");

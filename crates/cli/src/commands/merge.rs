@@ -87,7 +87,7 @@ impl Merge<'_> {
     }
 
     fn frame(&mut self, frame: Option<u32>) -> Result<(), Failure> {
-        let mut sheet = Sheet::new(&self.plan.options, &self.plan.layers)?;
+        let mut sheet = Sheet::new(self.plan, &self.plan.layers)?;
         for (number, piece) in (0..).zip(&self.pieces.pieces) {
             for part in piece.parts.iter().filter(|part| part.frame == frame) {
                 if !self.read(number, part, &mut sheet) {

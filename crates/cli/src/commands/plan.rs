@@ -16,7 +16,6 @@ use crate::exit::Failure;
 use crate::exit::put;
 use crate::interrupt;
 use crate::keyframes::Animation;
-use crate::layer_args::Background;
 use crate::many_args::PlanArgs;
 use crate::meaning::Place;
 use crate::messages::Messages;
@@ -66,7 +65,7 @@ pub fn run(typed: &PlanArgs, color: When) -> Result<(), Failure> {
     // They are files of the merge; nothing is written beside the plan.
     let bare = Plan { layers: Vec::new(), ..plan.clone() };
     let mut stage = Stage::new(&bare, &render, messages, animation)?;
-    let fingerprint = stage.fingerprint(&plan.layers, text.as_deref())?;
+    let fingerprint = stage.fingerprint(&plan, text.as_deref())?;
     let frames: Vec<Option<u32>> = match typed.frames {
         Some(range) => (range.first..=range.last).map(Some).collect(),
         None => vec![None],
@@ -116,8 +115,6 @@ fn said(made: &PiecePlan, seconds: f64) -> String {
 /// Refuses what pieces cannot have.
 fn check(plan: &Plan) -> Result<(), Failure> {
     let refused = [
-        (plan.overlay.is_some(), "--overlay"),
-        (matches!(plan.background, Some(Background::Image(_))), "--background image:FILE"),
         (plan.long.checkpoint.is_some(), "--checkpoint"),
         (plan.long.partial_every.is_some(), "--partial-every"),
         (plan.long.time_limit.is_some(), "--time-limit"),

@@ -19,13 +19,13 @@ use crate::exit::put;
 use crate::exit::say;
 use crate::extras::Encoded;
 use crate::extras::Extras;
+use crate::extras::back;
 use crate::extras::encoded;
 use crate::input;
 use crate::input::Understood;
 use crate::input::understand;
 use crate::interrupt;
 use crate::keep::Keep;
-use crate::layers::with_layers;
 use crate::limits;
 use crate::long_args::ProgressName;
 use crate::making::Made;
@@ -63,7 +63,7 @@ fn ready(typed: &RenderArgs, plan: &Plan, messages: Messages) -> Result<Ready, F
     if typed.missing_texture == MissingTexture::White {
         input::whiten(&mut resolved, &disk, plan.quiet);
     }
-    let extras = Extras::new(plan, &mut resolved, &sources)?;
+    let extras = Extras::new(plan, &mut resolved, &sources, back(plan)?)?;
     limits::check(&resolved, &plan.prepare, Some(&plan.options), &typed.reading.limits)?;
     let textures = Textures::load(&resolved, &disk, &plan.prepare).map_err(|faults| {
         messages.print(&faults, &sources);
@@ -73,7 +73,7 @@ fn ready(typed: &RenderArgs, plan: &Plan, messages: Messages) -> Result<Ready, F
         .long
         .checkpoint
         .is_some()
-        .then(|| with_layers(Fingerprint::of(&resolved, &textures, &plan.options), &plan.layers));
+        .then(|| extras.added_to(Fingerprint::of(&resolved, &textures, &plan.options), plan));
     // Nothing can be said of a place in the text any more, and the tree may want the memory.
     drop(sources);
     let world = World::build(resolved, textures, &plan.prepare).map_err(|faults| {

@@ -1,7 +1,6 @@
 //! `dotray work`: one piece of a plan.
 
 use dotray::image::write_file;
-use dotray::render::Layer;
 use dotray::render::LayerFilm;
 use dotray::render::Observer;
 use dotray::render::Picture;
@@ -10,8 +9,8 @@ use dotray::render::Tile;
 use dotray::render::TilePixels;
 use dotray::render::develop_bands;
 use dotray::render::develop_part;
+use dotray::render::progress::SavedKind;
 use dotray::render::tile_file::head_bytes;
-use serde_json::json;
 use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
@@ -29,6 +28,7 @@ use crate::pieces::Part;
 use crate::pieces::Piece;
 use crate::pieces::PiecePlan;
 use crate::pieces::Sheet;
+use crate::pieces::cut_out;
 use crate::plan::Plan;
 use crate::plan::plan;
 use crate::progress::Watcher;
@@ -58,10 +58,8 @@ pub fn run(typed: &WorkArgs, color: When) -> Result<(), Failure> {
     let threads: Vec<String> =
         typed.threads.map(|threads| format!("--threads={threads}")).into_iter().collect();
     let render = pieces.render_args(&threads)?;
-    let mut plan = plan(&render)?;
-    // They are files of the merge; nothing is written beside the pieces.
-    let layers = std::mem::take(&mut plan.layers);
-    let sheet = Sheet::new(&plan.options, &layers)?;
+    let plan = plan(&render)?;
+    let sheet = Sheet::new(&plan, &plan.layers)?;
     if sheet.count() != pieces.tiles {
         return Err(Failure::Failed(format!(
             "the plan counts {} tiles; the picture and its layers have {}",
@@ -76,9 +74,11 @@ pub fn run(typed: &WorkArgs, color: When) -> Result<(), Failure> {
     }
     let animation = pieces.animation.as_ref().map(|path| Animation::read(path.as_ref())).transpose()?;
     let (animation, text) = animation.map_or((Animation::default(), None), |(read, text)| (read, Some(text)));
-    let mut stage = Stage::new(&plan, &render, Messages::new(color, true), animation)?;
-    pieces.check(&typed.plan, &stage.fingerprint(&layers, text.as_deref())?)?;
-    let work = Work { plan: &plan, layers: &layers, pieces: &pieces, typed };
+    // They are files of the merge; nothing is written beside the pieces.
+    let bare = Plan { layers: Vec::new(), ..plan.clone() };
+    let mut stage = Stage::new(&bare, &render, Messages::new(color, true), animation)?;
+    pieces.check(&typed.plan, &stage.fingerprint(&plan, text.as_deref())?)?;
+    let work = Work { plan: &plan, pieces: &pieces, typed };
     for part in missing {
         work.compute(&mut stage, part)?;
     }
@@ -110,7 +110,6 @@ fn missing_parts<'a>(
 /// What all parts of a piece have in common.
 struct Work<'a> {
     plan: &'a Plan,
-    layers: &'a [Layer],
     pieces: &'a PiecePlan,
     typed: &'a WorkArgs,
 }
@@ -118,17 +117,18 @@ struct Work<'a> {
 impl Work<'_> {
     /// Computes a part and writes its file.
     fn compute(&self, stage: &mut Stage<'_>, part: &Part) -> Result<(), Failure> {
-        let Self { plan, layers, pieces, typed } = self;
+        let Self { plan, pieces, typed } = self;
         if let Some(frame) = part.frame {
-            events::emit("frame", json!({ "frame": frame, "frames": 1 }));
+            events::frame(frame, 1);
         }
         let set = stage.set(part.frame.unwrap_or(0))?;
         let picture = Picture::new(set.world, &plan.options)?;
-        let sheet = Sheet { picture: picture.film()?, layers: LayerFilm::new(&plan.options, layers)? };
+        let sheet = Sheet { picture: picture.film()?, layers: LayerFilm::new(&plan.options, &plan.layers)? };
         let (tiles, bands) = sheet.of_part(part);
         let pixels = |tiles: &[Tile]| tiles.iter().map(Tile::pixels).sum::<u64>();
         let all = pixels(&tiles) + pixels(&bands);
         let watcher = Watcher::new(all, typed.progress, false);
+        watcher.tile_finished(&Progress { finished_pixels: 0, total_pixels: all });
         let Sheet { picture: film, layers } = sheet;
         let (film, layers) = (Mutex::new(film), Mutex::new(layers));
         let of_tiles = OfPart { watcher: &watcher, before: 0, all };
@@ -146,14 +146,18 @@ impl Work<'_> {
         let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
         let layers = layers.into_inner().unwrap_or_else(PoisonError::into_inner);
         let mut bytes = head_bytes(&pieces.fingerprint(part.frame));
-        let tiles = tiles.iter().filter_map(|tile| film.pixels(tile));
+        let there: Vec<&Tile> = tiles.iter().filter(|tile| film.has(tile)).collect();
+        // What lies behind and over a picture depends on the whole of it, and is drawn as if all of it were there.
+        let image = set.extras.apply(film.into_image(), set.world, plan)?;
+        let window = plan.options.window();
+        let tiles = there.into_iter().map(|tile| cut_out(&image, window, tile));
         let bands = bands.iter().filter_map(|band| layers.pixels(band));
         tiles.chain(bands).for_each(|pixels| bytes.extend(pixels.to_bytes()));
         let path = pieces.path(&typed.output, typed.piece, part);
         // Somebody may have taken the folder away meanwhile; where it cannot be made, the write says so.
         let _ = fs::create_dir_all(&typed.output);
         write_file(&path, &bytes).map_err(|error| Failure::Failed(error.to_string()))?;
-        events::emit("saved", json!({ "kind": "piece", "file": path.display().to_string() }));
+        events::saved(SavedKind::Piece, &path);
         Ok(())
     }
 }

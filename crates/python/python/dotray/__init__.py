@@ -21,6 +21,7 @@ from dotray._dotray import VERSION as __version__
 from dotray._dotray import SceneError
 from dotray._image import Comparison, Image, compare
 from dotray._look import AreaLight, Camera, DirectionalLight, Light, Material, PointLight, SpotLight, Texture
+from dotray._progress import follow
 from dotray._scene import Diagnostic, Group, Scene, load
 
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "Texture",
     "__version__",
     "compare",
+    "follow",
     "load",
 ]
 

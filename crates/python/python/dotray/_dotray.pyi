@@ -7,11 +7,14 @@ from typing import Any, TypedDict, final
 import numpy as np
 from numpy.typing import NDArray
 
+PROGRESS_SCHEMA: int
 VERSION: str
 
 __all__ = [
     "Builder",
     "Film",
+    "Meter",
+    "PROGRESS_SCHEMA",
     "SceneError",
     "VERSION",
     "World",
@@ -33,7 +36,7 @@ __all__ = [
 
 _Floats = NDArray[np.float32] | NDArray[np.float64]
 _Camera = tuple[Sequence[float], Sequence[float], Sequence[float], float]
-_Progress = Callable[[int, int], object]
+_Progress = Callable[[dict[str, Any]], object]
 _Told = tuple[str, str, str, tuple[str, int, int] | None, str | None]
 _Lighting = tuple[Sequence[float], Sequence[float], Sequence[object]]
 
@@ -133,6 +136,7 @@ class World:
         camera: _Camera | None = None,
         light: _Lighting | None = None,
         progress: _Progress | None = None,
+        since: float = 0.0,
     ) -> dict[str, tuple[NDArray[np.float32], list[str]]]: ...
     def explain(
         self,
@@ -178,6 +182,11 @@ def encode(
     channels: Sequence[tuple[str, NDArray[np.float32]]],
 ) -> bytes: ...
 def write_file(path: str | PathLike[str], bytes: bytes) -> None: ...
+
+@final
+class Meter:
+    def __new__(cls) -> Meter: ...
+    def advance(self, finished_pixels: int, total_pixels: int) -> dict[str, Any]: ...
 
 @final
 class Film:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -305,7 +306,8 @@ class Scene(Container):
         accel, build, threads : how the nearest shape is found, the effort of building that structure (``"fast"``,
             ``"balanced"``, ``"best"``), and threads (all cores). The picture does not depend on them.
         progress : ``None`` shows a bar where somebody looks (tqdm's where it is installed), ``True`` always, ``False``
-            never; a function is called with the finished and all pixels. Ctrl-C stops.
+            never; a function is called with records as docs/progress.md describes them, dictionaries whose ``event`` is
+            ``"picture"``, ``"layers"`` or ``"progress"``. Ctrl-C stops, and so does an exception in the function.
         executor : a ``concurrent.futures.Executor`` whose workers make the tiles: see :mod:`dotray.cluster`.
 
         Raises
@@ -347,7 +349,8 @@ class Scene(Container):
             image = Image(pixels)
             image.stats = stats
             if names:
-                add_layers(image, world.layers(choices, names, camera, light, None))
+                since = time.monotonic() - bar.start
+                add_layers(image, world.layers(choices, names, camera, light, bar.function, since))
         return image
 
     def explain(self, x: int, y: int, width: int = 640, height: int = 480, **options: Any) -> dict[str, Any]:

@@ -28,6 +28,7 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, 
 from pathlib import Path
 from typing import Any
 
+from dotray import _dotray
 from dotray._engines import Engine, RayExecutor
 from dotray._image import Image
 from dotray._look import Camera
@@ -153,6 +154,7 @@ def render(
     Parameters
     ----------
     scene, width, height, layers, options : as for :meth:`dotray.Scene.render`.
+    progress : the same; a function gets the records ``progress``, whose pixels are those of all pieces.
     executor : an executor; Dask's ``Client`` or ``Client.get_executor(pure=False, retries=3)``; or a function that
         makes an executor, for those that break when a worker is killed (``ProcessPoolExecutor``).
     directory : a folder where pieces go as they come. Who starts again with the same scene and options finds them
@@ -218,7 +220,7 @@ def frames(
     path : where frames go, such as ``"film/{:04d}.png"``; the frame's number is put in, and the folder made.
     piece : about the edge of a piece in pixels; by default a frame is one piece.
     resume : whether frames whose files are there are left as they are.
-    scene, width, height, executor, directory, retries, patience, options : as for :func:`render`.
+    scene, width, height, executor, directory, retries, patience, progress, options : as for :func:`render`.
 
     Returns the frames' paths, in order; raises as :func:`render`, and OSError where a file cannot be written.
 
@@ -308,6 +310,9 @@ def _films(
         return
     engine = Engine(executor, content, None if folder is None else str(folder))
     try:
+        meter = _dotray.Meter()
+        # Pieces that were there are no pace.
+        meter.advance(finished, total)
         with Bar(progress) as bar:
             for part, computed in _gather(engine, wanted, take, retries, patience):
                 keep(part, computed, folder)
@@ -315,7 +320,7 @@ def _films(
                 left[frame] -= 1
                 finished += part.pixels
                 if bar.function is not None:
-                    bar.function(finished, total)
+                    bar.function(meter.advance(finished, total))
                 if not left[frame]:
                     yield frame, films.pop(frame).image()
     finally:

@@ -15,6 +15,7 @@ use dotray_render::RenderError;
 use dotray_render::Tile;
 use dotray_render::TilePixels;
 use dotray_render::World;
+use dotray_render::progress::Meter;
 use dotray_render::tiles::COARSE_STEPS;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -47,7 +48,7 @@ pub struct Job {
     /// What others trace of it.
     lent: Vec<Tile>,
     shown: Vec<u8>,
-    began: Instant,
+    meter: Meter,
     pub last_shown: Option<Instant>,
 }
 
@@ -60,9 +61,10 @@ impl Job {
         let film = picture.film()?;
         let left = middle_first(picture.tiles(), request.options.window());
         let shown = vec![0; film.image().width() * film.image().height() * 4];
-        let (parts, began) = (Some(picture.into_parts()), Instant::now());
+        let (parts, mut meter) = (Some(picture.into_parts()), Meter::new());
+        meter.advance(&film.progress());
         let lent = Vec::new();
-        Ok(Self { request, parts, film, looks: 0, left, lent, shown, began, last_shown: None })
+        Ok(Self { request, parts, film, looks: 0, left, lent, shown, meter, last_shown: None })
     }
 
     /// Traces tiles for about [`PORTION`]; answers whether any was finished.
@@ -115,15 +117,13 @@ impl Job {
     pub fn reply(&mut self, now: Instant) -> Reply {
         self.last_shown = Some(now);
         let complete = self.film.is_complete();
-        let progress = self.film.progress();
-        let part = progress.finished_pixels as f32 / progress.total_pixels.max(1) as f32;
+        let progress = self.meter.advance(&self.film.progress());
         let image = self.film.image();
         Reply::Picture {
             serial: self.request.serial,
             size: [image.width(), image.height()],
             pixels: Arc::new(self.shown.clone()),
-            done: if complete { 1.0 } else { part.min(0.999) },
-            seconds: now.duration_since(self.began).as_secs_f64(),
+            progress,
             image: complete.then(|| Arc::new(image.clone())),
         }
     }

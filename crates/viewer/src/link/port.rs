@@ -170,8 +170,7 @@ impl Port {
                     serial: sent.serial,
                     size,
                     pixels: Arc::new(sent.pixels),
-                    done: sent.done,
-                    seconds: sent.seconds,
+                    progress: sent.progress,
                     image: image.map(Arc::new),
                 }));
             }

@@ -3,6 +3,7 @@
 use crate::state::State;
 use dotray_accel::simd::level;
 use dotray_accel::simd::level_name;
+use dotray_render::progress::Advance;
 use eframe::egui;
 use eframe::egui::Ui;
 
@@ -39,6 +40,13 @@ pub fn show(ui: &mut Ui, state: &State) {
     });
 }
 
+/// The per cent that are finished, and the seconds left where there are some.
+fn under_way(progress: &Advance) -> String {
+    let left = progress.seconds_left.filter(|seconds| *seconds >= 1.0);
+    let left = left.map_or_else(String::new, |seconds| format!(", {seconds:.0} s left"));
+    format!("tracing: {} %{left}", progress.percent())
+}
+
 /// How far the traced picture has come.
 fn traced(state: &State) -> String {
     if state.document.is_some() && !state.prepared {
@@ -47,8 +55,25 @@ fn traced(state: &State) -> String {
     }
     let left_out = if state.hidden.is_empty() { "" } else { ", hidden shapes left out" };
     match &state.traced {
-        Some(traced) if traced.image.is_some() => format!("traced in {:.2} s{left_out}", traced.seconds),
-        Some(traced) => format!("tracing: {:.0} %{left_out}", traced.done * 100.0),
+        Some(traced) if traced.image.is_some() => {
+            format!("traced in {:.2} s{left_out}", traced.progress.seconds)
+        }
+        Some(traced) => format!("{}{left_out}", under_way(&traced.progress)),
         None => "preview".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_told_once_it_is_known_and_counts() {
+        let at = |finished_pixels, seconds_left| {
+            under_way(&Advance { finished_pixels, total_pixels: 300, seconds_left, ..Advance::default() })
+        };
+        assert_eq!(at(0, None), "tracing: 0 %");
+        assert_eq!(at(299, Some(0.4)), "tracing: 99 %");
+        assert_eq!(at(150, Some(12.3)), "tracing: 50 %, 12 s left");
     }
 }
