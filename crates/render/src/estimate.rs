@@ -190,7 +190,11 @@ fn cgroup_limits(read: &impl Fn(&str) -> Option<String>) -> Vec<u64> {
     files.iter().filter_map(|path| read(path)?.trim().parse().ok()).collect()
 }
 
-/// What `ulimit -v` leaves: addresses that are taken already, such as those of the program itself, count.
+/// The addresses that the C library sets aside for each thread that asks it for memory.
+const ADDRESSES_OF_A_THREAD: u64 = 64 << 20;
+
+/// What `ulimit -v` leaves: addresses that are taken already, such as those of the program itself, count, and so do
+/// those that threads will set aside; but never more than half of what is left, lest little work be refused.
 fn address_space(read: &impl Fn(&str) -> Option<String>) -> Option<u64> {
     let limits = read("/proc/self/limits")?;
     let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
@@ -198,7 +202,9 @@ fn address_space(read: &impl Fn(&str) -> Option<String>) -> Option<u64> {
     let status = read("/proc/self/status")?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmSize:"))?;
     let taken: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(limit.saturating_sub(taken.saturating_mul(1024)))
+    let left = limit.saturating_sub(taken.saturating_mul(1024));
+    let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get() as u64);
+    Some(left - (threads * ADDRESSES_OF_A_THREAD).min(left / 2))
 }
 
 #[cfg(test)]
@@ -226,7 +232,7 @@ mod tests {
             _ => None,
         };
         assert_eq!(cgroup_limits(&read), [123]);
-        assert_eq!(address_space(&read), Some(5000 - 1024));
+        assert_eq!(address_space(&read), Some((5000 - 1024) / 2));
     }
 
     #[test]
