@@ -75,6 +75,13 @@ pub struct Part {
     pub count: u32,
 }
 
+impl Part {
+    /// Whether the tile or band of this number is one of its.
+    pub const fn holds(&self, number: u32) -> bool {
+        number >= self.first && number - self.first < self.count
+    }
+}
+
 /// A plan is small: more than this is something else.
 const MOST_BYTES: u64 = 1 << 30;
 
@@ -230,7 +237,7 @@ impl Sheet {
 
     /// The tiles of a part, and its bands.
     pub fn of_part(&self, part: &Part) -> (Vec<Tile>, Vec<Tile>) {
-        let wanted = |tile: &&Tile| tile.number >= part.first && tile.number - part.first < part.count;
+        let wanted = |tile: &&Tile| part.holds(tile.number);
         let [tiles, bands] = [self.picture.tiles(), self.layers.bands()];
         (tiles.iter().filter(wanted).copied().collect(), bands.iter().filter(wanted).copied().collect())
     }
@@ -241,9 +248,8 @@ impl Sheet {
             Known { tiles: self.picture.tiles(), channels: self.picture.channels() },
             Known { tiles: self.layers.bands(), channels: self.layers.channels() },
         ];
-        let wanted = |number: u32| number >= part.first && number - part.first < part.count;
         read_tiles(path, &known, |pixels| {
-            if wanted(pixels.tile.number) {
+            if part.holds(pixels.tile.number) {
                 take(pixels);
             }
         })

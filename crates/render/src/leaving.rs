@@ -159,9 +159,9 @@ mod tests {
         for _ in 0..400_000 {
             let shape = random.solid();
             let center = shape.bounds().center();
-            let toward = Ray::new(center + random.direction() * 2.0, Vec3::X);
+            let origin = center + random.direction() * 2.0;
             let aim = center + (shape.bounds().max - shape.bounds().min) * random.vector() * 0.4;
-            let toward = Ray::new(toward.origin, (aim - toward.origin).normalize());
+            let toward = Ray::new(origin, (aim - origin).normalize());
             let frame = random.frame();
             let toward_in_world = toward.transformed(&frame.world_from_object);
             let Some(hit) = shape.intersect(&toward, 1e-9, f64::INFINITY) else { continue };

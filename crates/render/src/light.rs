@@ -194,7 +194,8 @@ impl Light {
                 lamp.color * fading * fall_off(cosine, *exponent)
             }
             Self::Area { lamp, axis, .. } => {
-                if -towards.dot(*axis) <= 0.0 {
+                let in_front = -towards.dot(*axis) > 0.0;
+                if !in_front {
                     return None;
                 }
                 lamp.color * fading

@@ -46,6 +46,7 @@ pub struct Tracer<'a> {
     streams: Vec<Stream<'a>>,
     nearest: NearestBuffers,
     shadows: lighting::ShadowStream,
+    lamp_ways: lighting::LampWays,
     /// Who wants to know everything of the one ray that is traced.
     inspector: Option<Inspector>,
     /// Who wants to know something of every eye ray.
@@ -110,6 +111,7 @@ impl<'a> Tracer<'a> {
             streams: Vec::new(),
             nearest: NearestBuffers::default(),
             shadows: lighting::ShadowStream::default(),
+            lamp_ways: lighting::LampWays::default(),
             inspector: None,
             recorder: None,
             observer: &Silent,

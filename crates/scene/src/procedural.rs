@@ -64,6 +64,11 @@ pub struct Procedural {
 }
 
 impl Procedural {
+    /// Whether there is nothing: neither a texture nor a bump.
+    pub const fn is_empty(&self) -> bool {
+        self.solids.is_empty() && self.bumps.is_empty()
+    }
+
     /// The numbers of the textures that lean normals.
     pub fn bump_textures(&self) -> impl Iterator<Item = u32> {
         self.bumps.iter().filter_map(|bump| match *bump {

@@ -175,6 +175,7 @@ mod tests {
     use dotray_render::PrepareOptions;
     use dotray_render::Silent;
     use dotray_render::World;
+    use dotray_scene::Resolved;
     use dotray_scene::files::Disk;
     use dotray_scene::load::LoadOptions;
     use dotray_scene::load::load_text;
@@ -190,19 +191,19 @@ mod tests {
         Ask::Open { number: 1, path: "a.ray".to_owned(), accel: "bvh".to_owned(), files }
     }
 
-    fn request(serial: u64, antialias: Antialias) -> Request {
+    fn resolved() -> Resolved {
         let scene =
             load_text("a.ray", SCENE.to_owned(), &Disk, &LoadOptions::default()).scene.expect("a scene");
-        let resolved = resolve(scene).resolved.expect("resolved");
+        resolve(scene).resolved.expect("resolved")
+    }
+
+    fn request(serial: u64, antialias: Antialias) -> Request {
         let options = Options { width: 201, height: 133, antialias, ..Options::default() };
-        Request { serial, camera: resolved.camera, options }
+        Request { serial, camera: resolved().camera, options }
     }
 
     fn rendered(request: &Request) -> Vec<f32> {
-        let scene =
-            load_text("a.ray", SCENE.to_owned(), &Disk, &LoadOptions::default()).scene.expect("a scene");
-        let resolved = resolve(scene).resolved.expect("resolved");
-        let world = World::prepare(resolved, &Disk, &PrepareOptions::default()).expect("a world");
+        let world = World::prepare(resolved(), &Disk, &PrepareOptions::default()).expect("a world");
         dotray_render::render(&world, &request.options, &Silent).expect("a picture").image.samples().to_vec()
     }
 

@@ -21,7 +21,6 @@ use dotray_geometry::Vec3;
 use dotray_image::Image;
 use dotray_render::Crop;
 use dotray_render::Options;
-use dotray_render::Picture;
 use dotray_render::PrepareOptions;
 use dotray_render::TilePixels;
 use dotray_render::World;
@@ -277,12 +276,10 @@ impl Engine {
             let Some(world) = self.world.as_deref_mut() else { return };
             world.set_camera(request.camera);
             // Whoever shares a picture has seen that there can be one.
-            let Ok(picture) = Picture::new(world, &request.options) else { return };
-            let parts = picture.into_parts();
-            self.errand = Some(Box::new(Errand::new(request, parts)));
+            self.errand = Errand::new(world, request).ok().map(Box::new);
         }
-        if let (Some(errand), Some(world)) = (&mut self.errand, self.world.as_deref()) {
-            errand.take(world, looks, &tiles);
+        if let Some(errand) = &mut self.errand {
+            errand.take(looks, &tiles);
         }
     }
 

@@ -95,13 +95,12 @@ impl Hidden {
 
     /// The number of the shape that is the `index`-th of those shown.
     pub fn number_of_shown(&self, index: u32) -> u32 {
-        let before = |number: u32, range: &Range<u32>| (range.start <= number).then(|| range.len() as u32);
         let mut number = index;
         for range in &self.ranges {
-            match before(number, range) {
-                Some(skipped) => number = number.saturating_add(skipped),
-                None => break,
+            if range.start > number {
+                break;
             }
+            number = number.saturating_add(range.len() as u32);
         }
         number
     }

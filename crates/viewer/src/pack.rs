@@ -14,7 +14,6 @@ use dotray_geometry::Vec2;
 use dotray_geometry::Vec3;
 use dotray_scene::Resolved;
 use dotray_scene::bounds::world_bounds;
-use dotray_scene::procedural::Procedural;
 use dotray_scene::resolved::Run;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -196,9 +195,10 @@ impl Packed {
         for within in shapes.start.saturating_sub(run.first_shape)..end {
             let entry = (run.first + within) as usize;
             let material = resolved.material_index(run, written.get(entry).copied().unwrap_or(-1));
-            let textured = resolved.materials.get(material as usize).is_some_and(|m| {
-                m.texture.is_some() || !m.procedural.solids.is_empty() || !m.procedural.bumps.is_empty()
-            });
+            let textured = resolved
+                .materials
+                .get(material as usize)
+                .is_some_and(|m| m.texture.is_some() || !m.procedural.is_empty());
             if let Some(shape) = file.shape(run.kind, entry) {
                 let number = run.first_shape + within;
                 self.shape(&shape, &Placed { number, material, frame, frame_number: run.frame, textured });
@@ -325,8 +325,7 @@ impl Packed {
 
 /// The frames as the shader wants them; nothing where no material asks for places in object space.
 fn frames(resolved: &Resolved, view: &ViewFrame) -> Vec<[[f32; 4]; 3]> {
-    let is_carved = |procedural: &Procedural| !procedural.solids.is_empty() || !procedural.bumps.is_empty();
-    if !resolved.materials.iter().any(|material| is_carved(&material.procedural)) {
+    if resolved.materials.iter().all(|material| material.procedural.is_empty()) {
         return Vec::new();
     }
     let rows = |frame: &Transform| {

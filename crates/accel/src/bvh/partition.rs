@@ -104,7 +104,8 @@ impl Extent {
     /// Half the surface; 0 where it is empty.
     #[inline(always)]
     pub fn half_area(&self) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|axis| (self.high[axis] - self.low[axis]).max(0.0));
+        let edges: [f32; 4] = std::array::from_fn(|i| self.high[i] - self.low[i]);
+        let [x, y, z, _] = max(edges, [0.0; 4]);
         x * (y + z) + y * z
     }
 
@@ -142,15 +143,18 @@ impl Span {
 
     /// Of these references, by all threads where they are many.
     pub fn of<T: Member>(members: &[T]) -> Self {
-        let one = |members: &[T]| {
-            let mut span = Self::EMPTY;
-            members.iter().for_each(|member| span.add(member.reference()));
-            span
-        };
         if members.len() <= PIECE {
-            return one(members);
+            return Self::of_few(members);
         }
-        members.par_chunks(PIECE).map(one).reduce(|| Self::EMPTY, Self::joined)
+        members.par_chunks(PIECE).map(Self::of_few).reduce(|| Self::EMPTY, Self::joined)
+    }
+
+    /// Of these, by this thread.
+    #[inline(always)]
+    fn of_few<T: Member>(members: &[T]) -> Self {
+        let mut span = Self::EMPTY;
+        members.iter().for_each(|member| span.add(member.reference()));
+        span
     }
 
     /// Takes in a reference.
@@ -184,18 +188,17 @@ pub fn part<T: Member>(members: &mut [T], below: impl Fn(&Reference) -> bool + S
 
 /// Parts one piece.
 fn part_piece<T: Member>(members: &mut [T], below: &impl Fn(&Reference) -> bool) -> (usize, Span, Span) {
-    // Every member changes places with the first that is not below, itself included: no branch to guess wrong.
+    // Every member changes places with the first that is not below, itself included: no branch to guess wrong. The
+    // spans follow in loops of their own, which keep them in registers: half the time of both at once.
     let mut middle = 0;
-    let mut spans = [Span::EMPTY; 2];
     for i in 0..members.len() {
         let member = members[i];
-        let is_below = below(member.reference());
-        spans[usize::from(!is_below)].add(member.reference());
         members[i] = members[middle];
         members[middle] = member;
-        middle += usize::from(is_below);
+        middle += usize::from(below(member.reference()));
     }
-    (middle, spans[0], spans[1])
+    let (low, high) = members.split_at(middle);
+    (middle, Span::of_few(low), Span::of_few(high))
 }
 
 /// Brings the pieces' parts together: what lies on the wrong side of `middle` changes places, run by run.

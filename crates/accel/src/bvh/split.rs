@@ -131,29 +131,41 @@ impl<const N: usize> Bins<N> {
             if self.scale[axis] == 0.0 {
                 continue;
             }
-            // From above: what the references at or above each bin cost.
-            let mut above = [f32::INFINITY; N];
-            let (mut extent, mut count) = (Extent::EMPTY, 0);
-            for bin in (1..N).rev() {
-                extent.join(&self.extents[axis][bin]);
-                count += self.counts[axis][bin];
-                if count > 0 {
-                    above[bin] = extent.half_area() * leaf_cost(count as usize);
-                }
-            }
-            // From below, and both together.
-            let (mut extent, mut count) = (Extent::EMPTY, 0);
-            for bin in 1..N {
-                extent.join(&self.extents[axis][bin - 1]);
-                count += self.counts[axis][bin - 1];
-                if count > 0 {
-                    let cost = extent.half_area() * leaf_cost(count as usize) + above[bin];
-                    if cost < best.cost {
-                        best = Split { axis, bin, low: self.low[axis], scale: self.scale[axis], cost };
-                    }
-                }
+            // What each way to split costs, all of them before any is compared: no branch to guess wrong.
+            let costs = self.costs(axis);
+            let least =
+                costs[1..].iter().fold(f32::INFINITY, |least, &cost| if cost < least { cost } else { least });
+            if least < best.cost {
+                let bin = costs.iter().position(|&cost| cost == least).unwrap_or(0);
+                best = Split { axis, bin, low: self.low[axis], scale: self.scale[axis], cost: least };
             }
         }
         (best.bin > 0).then_some(best)
     }
+
+    /// What both sides cost where an axis is split below each bin; infinite where one side is empty.
+    fn costs(&self, axis: usize) -> [f32; N] {
+        let (extents, counts) = (&self.extents[axis], &self.counts[axis]);
+        let mut costs = [f32::INFINITY; N];
+        let (mut extent, mut count) = (Extent::EMPTY, 0);
+        for bin in (1..N).rev() {
+            extent.join(&extents[bin]);
+            count += counts[bin];
+            costs[bin] = side_cost(&extent, count);
+        }
+        let (mut extent, mut count) = (Extent::EMPTY, 0);
+        for bin in 1..N {
+            extent.join(&extents[bin - 1]);
+            count += counts[bin - 1];
+            costs[bin] += side_cost(&extent, count);
+        }
+        costs
+    }
+}
+
+/// What one side of a split costs: infinite where it is empty.
+#[inline(always)]
+fn side_cost(extent: &Extent, count: u32) -> f32 {
+    let cost = extent.half_area() * leaf_cost(count as usize);
+    if count > 0 { cost } else { f32::INFINITY }
 }

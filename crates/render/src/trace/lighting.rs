@@ -34,6 +34,11 @@ pub(super) struct ShadowStream {
     waiting: Vec<(usize, Vec3)>,
     filters: Vec<Vec3>,
     buffers: ShadowBuffers,
+}
+
+/// Where the points of a stream lie, and how one lamp after the other lies to them.
+#[derive(Default)]
+pub(super) struct LampWays {
     places: Places,
     ways: Ways,
 }
@@ -65,7 +70,7 @@ struct LightSample<'a> {
 impl Tracer<'_> {
     /// Adds every light's term to every point, light after light.
     pub(super) fn add_lights(&mut self, met: &[Met<'_>], colors: &mut [Vec3]) {
-        self.shadows.places.fill(met.iter().map(|Met { point, .. }| (point.point, point.normal)));
+        self.lamp_ways.places.fill(met.iter().map(|Met { point, .. }| (point.point, point.normal)));
         for (number, (light, tint)) in (0..).zip(self.world.lights.iter().zip(&self.world.tints)) {
             let samples = light.samples(self.options.light_samples);
             let first = LightSample { light, tint, number, sample: 0, samples };
@@ -96,8 +101,8 @@ impl Tracer<'_> {
         let eps = self.world.ray_eps;
         match from.light.source() {
             Some(source) if self.inspector.is_none() => {
-                let mut ways = std::mem::take(&mut shadows.ways);
-                ways.find(self.level, &source, &shadows.places);
+                let LampWays { places, ways } = &mut self.lamp_ways;
+                ways.find(self.level, &source, places);
                 for (place, way, cosine) in ways.facing() {
                     let Met { index, point } = &met[place];
                     if let Some(incident) = from.light.along(way) {
@@ -105,7 +110,6 @@ impl Tracer<'_> {
                         shadows.ask(*index, point, &incident, eps, lit);
                     }
                 }
-                shadows.ways = ways;
             }
             Some(_) | None => {
                 for Met { index, point } in met {
@@ -133,7 +137,7 @@ impl Tracer<'_> {
     fn find_filters(&mut self) {
         let world = self.world;
         let together = self.together();
-        let ShadowStream { rays, left, ends, waiting, filters, buffers, .. } = &mut self.shadows;
+        let ShadowStream { rays, left, ends, waiting, filters, buffers } = &mut self.shadows;
         filters.clear();
         filters.resize(rays.len(), Vec3::ONE);
         let all_opaque = match self.options.shadows {

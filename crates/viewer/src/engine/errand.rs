@@ -6,6 +6,7 @@ use super::interrupt::Interrupt;
 use super::job::trace;
 use dotray_render::Parts;
 use dotray_render::Picture;
+use dotray_render::RenderError;
 use dotray_render::Tile;
 use dotray_render::World;
 use dotray_render::tiles::COARSE_STEPS;
@@ -16,15 +17,22 @@ use std::collections::VecDeque;
 #[derive(Debug)]
 pub struct Errand {
     pub request: Request,
+    /// All tiles of the picture, by their numbers.
+    tiles: Vec<Tile>,
     /// Taken out while a portion is traced.
     parts: Option<Parts>,
     shares: VecDeque<(usize, Vec<Tile>)>,
 }
 
 impl Errand {
-    /// For the picture of this request, which is made of these parts.
-    pub fn new(request: Request, parts: Parts) -> Self {
-        Self { request, parts: Some(parts), shares: VecDeque::new() }
+    /// For the picture of this request.
+    ///
+    /// # Errors
+    /// Options that make no sense.
+    pub fn new(world: &World, request: Request) -> Result<Self, RenderError> {
+        let picture = Picture::new(world, &request.options)?;
+        let (tiles, parts) = (picture.tiles().to_vec(), Some(picture.into_parts()));
+        Ok(Self { request, tiles, parts, shares: VecDeque::new() })
     }
 
     /// Whether nothing is left of it.
@@ -32,12 +40,9 @@ impl Errand {
         self.shares.is_empty()
     }
 
-    pub fn take(&mut self, world: &World, looks: usize, numbers: &[u32]) {
-        let Some(parts) = self.parts.take() else { return };
-        let picture = Picture::of(world, &self.request.options, parts);
-        let tiles = numbers.iter().filter_map(|number| picture.tiles().get(*number as usize).copied());
+    pub fn take(&mut self, looks: usize, numbers: &[u32]) {
+        let tiles = numbers.iter().filter_map(|number| self.tiles.get(*number as usize).copied());
         self.shares.push_back((looks, tiles.collect()));
-        self.parts = Some(picture.into_parts());
     }
 
     pub fn portion(&mut self, world: &World, interrupt: &Interrupt<'_>) -> Option<Part> {

@@ -98,11 +98,10 @@ impl Job {
 
     pub fn lend(&mut self, count: usize) -> Option<Share> {
         // The last one stays here.
-        let lent = self.left.drain(..count.min(self.left.len().saturating_sub(1)));
-        let first = self.lent.len();
-        self.lent.extend(lent);
-        let tiles: Vec<u32> = self.lent.iter().skip(first).map(|tile| tile.number).collect();
-        (!tiles.is_empty()).then(|| Share { request: self.request.clone(), looks: self.looks, tiles })
+        let count = count.min(self.left.len().saturating_sub(1));
+        let tiles: Vec<u32> = self.left.iter().take(count).map(|tile| tile.number).collect();
+        self.lent.extend(self.left.drain(..count));
+        (count > 0).then(|| Share { request: self.request.clone(), looks: self.looks, tiles })
     }
 
     pub fn accept(&mut self, part: &Part) -> bool {

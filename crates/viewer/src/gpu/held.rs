@@ -50,12 +50,17 @@ impl Held {
     /// Keeps what can be seen of what is shown: as few ranges as there can be.
     fn look(&mut self, sight: &Sight) {
         self.in_sight.clear();
-        let mut at = 0;
-        let seen = self.chunks.chunk_by(|a, b| sight.misses(*a) == sight.misses(*b)).filter_map(|chunks| {
-            let first = at;
-            at += (chunks.len() * CHUNK) as u32;
-            chunks.first().filter(|chunk| !sight.misses(**chunk)).map(|_| first..at)
-        });
+        let mut seen: Vec<Range<u32>> = Vec::new();
+        for (number, chunk) in self.chunks.iter().enumerate() {
+            if sight.misses(*chunk) {
+                continue;
+            }
+            let (first, end) = ((number * CHUNK) as u32, ((number + 1) * CHUNK) as u32);
+            match seen.last_mut() {
+                Some(last) if last.end == first => last.end = end,
+                Some(_) | None => seen.push(first..end),
+            }
+        }
         for seen in seen {
             let first = self.shown.partition_point(|range| range.end <= seen.start);
             let shown = self.shown.iter().skip(first).take_while(|range| range.start < seen.end);
