@@ -72,7 +72,7 @@ pub struct Corner {
     pub texcoord: [f32; 2],
     /// The number of its material.
     pub material: u32,
-    /// The number of its frame; from [`COLORED`] on that of its colour in [`Packed::colors`], where the frame's is, too.
+    /// The number of its frame; from [`COLORED`] on that of its colour in [`Packed::colors`], where the frame's is too.
     pub frame: u32,
 }
 

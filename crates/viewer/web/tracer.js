@@ -2,8 +2,8 @@
 // those whom it leads, or of the one who leads it.
 import start from "./rayview.js";
 
-// The page withdraws this address when something cannot wait: where it shares no memory, the one thing that a thread can
-// learn in the midst of work.
+// The page withdraws this address when something cannot wait: where it shares no memory, the one thing that a thread
+// can learn in the midst of work.
 let address;
 
 const reaches = (address) => {
