@@ -263,7 +263,8 @@ fn colours_of_vertices_are_drawn_as_they_are_traced() {
     let Some(mut raster) = raster() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("colours.scene");
-    let mut text = "#camera 0 2 9 0 -.2 -1 0 1 0 24\n#background .1 .1 .2\n#ambient .4 .4 .4\n#shader \"V.vert\" \"VertexColour\"
+    let mut text = "#camera 0 2 9 0 -.2 -1 0 1 0 24\n#background .1 .1 .2\n#ambient .4 .4 .4
+        #shader \"V.vert\" \"VertexColour\"
         #light_num 1
         #light_point .8 .8 .7 3 5 6 1 0 0\n#material_num 2
         #material .2 .2 .2 .7 .7 .7 .3 .3 .3 0 0 0 .2 0 1 -1 !!
