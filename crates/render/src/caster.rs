@@ -175,6 +175,11 @@ impl Caster {
         buffers.crossings
     }
 
+    /// The shapes alone.
+    pub(crate) fn into_shapes(self) -> Shapes {
+        self.shapes
+    }
+
     /// The surface that `ray` met at `nearest`.
     pub fn surface(&self, ray: &Ray, nearest: &Nearest) -> WorldSurface {
         self.shapes.surface(nearest.position, ray, nearest.hit)

@@ -3,6 +3,8 @@
 //! A *position* is a place in the accelerator's order, so that a leaf is one block of memory; a *number* is the
 //! shape's place in the scene's file order, which decides ties.
 
+mod written;
+
 use crate::bake::Baked;
 use crate::bake::Lists;
 use crate::bake::RunIndex;

@@ -118,6 +118,16 @@ impl World {
         Self::build_after(resolved, Textures { textures, seconds: 0.0 }, options, refit.then_some(caster))
     }
 
+    /// Takes the scene apart again: its textures, and its shapes with their runs and transforms, which are put into
+    /// `rest`, the scene that this was built of without its shapes. Whoever wants to build it otherwise need not keep
+    /// the shapes a second time. The files' own trees, which nothing is built of, are gone.
+    pub fn take_apart(self, rest: Resolved) -> (Resolved, Textures) {
+        let shape_count = self.shape_count() as u32;
+        let Self { textures, caster, .. } = self;
+        let (runs, frames, files) = caster.into_shapes().into_written(rest.default_material());
+        (Resolved { runs, frames, files, shape_count, ..rest }, Textures { textures, seconds: 0.0 })
+    }
+
     fn build_after(
         resolved: Resolved,
         textures: Textures,

@@ -7,6 +7,7 @@ use crate::engine::Command;
 use crate::engine::Engine;
 use crate::engine::Reply;
 use crate::engine::Share;
+use crate::hidden::without_shapes;
 use crate::wire::Ask;
 use crate::wire::Sent;
 use crate::wire::SentPart;
@@ -115,11 +116,11 @@ impl Clerk {
         let start = Instant::now();
         let options = PrepareOptions { accel, ..PrepareOptions::default() };
         match prepared(path, files, &options) {
-            Ok((world, whole)) => {
-                self.style = Some(Box::new(without_shapes(&whole)));
+            Ok((world, rest)) => {
+                self.style = Some(Box::new(Resolved { tree: Vec::new(), ..rest.clone() }));
                 self.held = None;
                 self.engine.handle(Command::World(Some(Box::new(world))));
-                self.engine.handle(Command::Whole(Box::new(whole), options));
+                self.engine.handle(Command::Rest(Box::new(rest), options));
                 Tell::Prepared(number, start.elapsed().as_secs_f64())
             }
             Err(messages) => Tell::Failed(number, messages.into_iter().map(|message| message.text).collect()),
@@ -149,7 +150,7 @@ impl Clerk {
     }
 }
 
-/// The scene for the tracer, and all that it was built of.
+/// The scene for the tracer, and what it was built of besides shapes.
 fn prepared(
     path: &Path,
     files: &dyn Files,
@@ -162,29 +163,11 @@ fn prepared(
         outcome.resolved
     });
     let Some(resolved) = resolved else { return Err(messages(&diagnostics, &sources)) };
-    let whole = resolved.clone();
+    let rest = without_shapes(&resolved);
     let textures = Textures::load(&resolved, files, options).map_err(|faults| messages(&faults, &sources))?;
     drop(sources);
     let world = World::build(resolved, textures, options);
     // What is said of a whole scene has no place.
     let world = world.map_err(|faults| messages(&faults, &Sources::default()))?;
-    Ok((world, whole))
-}
-
-fn without_shapes(resolved: &Resolved) -> Resolved {
-    Resolved {
-        camera: resolved.camera,
-        background: resolved.background,
-        secondary_background: resolved.secondary_background,
-        ambient: resolved.ambient,
-        lights: resolved.lights.clone(),
-        tints: resolved.tints.clone(),
-        materials: resolved.materials.clone(),
-        textures: resolved.textures.clone(),
-        frames: Vec::new(),
-        runs: Vec::new(),
-        tree: Vec::new(),
-        shape_count: 0,
-        files: Vec::new(),
-    }
+    Ok((world, rest))
 }

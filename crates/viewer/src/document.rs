@@ -119,7 +119,7 @@ pub fn open(path: &Path, files: &dyn Files) -> Result<Opened, Vec<Message>> {
         outline: Outline::new(&resolved),
         draft: draft(&packed),
         packed,
-        pictures: Pictures::load(&resolved.textures, files),
+        pictures: Pictures::load(&resolved, files),
         messages,
         shape_count: resolved.shape_count,
         style,

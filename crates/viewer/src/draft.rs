@@ -129,6 +129,7 @@ pub fn draft(packed: &Packed) -> Option<Packed> {
     Some(Packed {
         frame: packed.frame,
         frames: packed.frames.clone(),
+        colors: packed.colors.clone(),
         bounds: packed.bounds,
         balls: sketch(&packed.balls, step, small.layers),
         rounds: sketch(&packed.rounds, step, small.layers),
@@ -148,8 +149,8 @@ mod tests {
         let numbers = (0..balls.len() as u32).collect();
         let frame = ViewFrame { center: Vec3::ZERO, unit: 1.0 };
         let balls = vec![Batch { things: balls, numbers }];
-        let (rounds, boxes, triangles, frames) = Default::default();
-        Packed { frame, bounds: Aabb::EMPTY, balls, rounds, boxes, triangles, frames }
+        let (rounds, boxes, triangles, frames, colors) = Default::default();
+        Packed { frame, bounds: Aabb::EMPTY, balls, rounds, boxes, triangles, frames, colors }
     }
 
     #[test]

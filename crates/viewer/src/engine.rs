@@ -11,6 +11,7 @@ mod errand;
 
 use crate::hidden::Hidden;
 use crate::hidden::without;
+use crate::hidden::without_shapes;
 use crate::rays::RayRow;
 use crate::rays::rows;
 use dotray_accel::Queries;
@@ -55,8 +56,8 @@ pub struct Request {
 pub enum Command {
     /// Another scene; the picture under way is dropped.
     World(Option<Box<World>>),
-    /// All that the world was built of, and how: without it no shape can be left out.
-    Whole(Box<Resolved>, PrepareOptions),
+    /// What the world was built of besides its shapes, and how: without it no shape can be left out.
+    Rest(Box<Resolved>, PrepareOptions),
     /// Other lights, materials and background of the same scene.
     Style(Box<Resolved>),
     /// These shapes are not traced; those that were left out before are again. The picture under way is dropped.
@@ -139,9 +140,10 @@ pub struct Seen {
 /// How often a picture under way is shown.
 const SHOWN_EVERY: Duration = Duration::from_millis(40);
 
-/// The shapes of the world, hidden ones and all.
+/// What the world is built anew of where shapes are left out.
 #[derive(Debug)]
 struct Whole {
+    /// Without shapes, as long as the world has all of them; else with all.
     resolved: Box<Resolved>,
     prepare: PrepareOptions,
 }
@@ -187,7 +189,7 @@ impl Engine {
                 (self.hidden, self.left_out) = Default::default();
                 Vec::new()
             }
-            Command::Whole(resolved, prepare) => {
+            Command::Rest(resolved, prepare) => {
                 self.whole = Some(Whole { resolved, prepare });
                 Vec::new()
             }
@@ -227,10 +229,25 @@ impl Engine {
         if self.left_out == self.hidden {
             return;
         }
-        let Some((whole, world)) = self.whole.as_ref().zip(self.world.take()) else { return };
-        let shown = without(&whole.resolved, &self.hidden);
-        // Fewer shapes than before are never too many.
-        self.world = world.moved(shown, &whole.prepare, false).ok().map(Box::new);
+        if self.whole.is_none() {
+            return;
+        }
+        let Some((mut whole, world)) = self.whole.take().zip(self.world.take()) else { return };
+        // The shapes are kept once: by the world that has all of them, or else beside the one that lacks some.
+        let world = if self.left_out.is_empty() {
+            let (resolved, textures) = world.take_apart(*whole.resolved);
+            *whole.resolved = resolved;
+            World::build(without(&whole.resolved, &self.hidden), textures, &whole.prepare)
+        } else if self.hidden.is_empty() {
+            let rest = without_shapes(&whole.resolved);
+            let all = std::mem::replace(&mut *whole.resolved, rest);
+            world.moved(all, &whole.prepare, false)
+        } else {
+            world.moved(without(&whole.resolved, &self.hidden), &whole.prepare, false)
+        };
+        // As many shapes as before, or fewer, are never too many.
+        self.world = world.ok().map(Box::new);
+        self.whole = Some(whole);
         if let Some((world, style)) = self.world.as_mut().zip(self.style.as_ref()) {
             world.restyle(style);
         }

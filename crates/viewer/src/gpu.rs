@@ -13,6 +13,7 @@ use crate::pack::Packed;
 use crate::pictures::Pictures;
 use crate::rays::Line;
 use crate::tables;
+use crate::tables::Places;
 use crate::tables::ViewFrame;
 use dotray_geometry::Vec3;
 use dotray_scene::Resolved;
@@ -36,7 +37,8 @@ struct Loaded {
     shapes: HeldShapes,
     draft: Option<HeldShapes>,
     pictures: wgpu::TextureView,
-    frames: wgpu::TextureView,
+    places: Places,
+    place_table: wgpu::TextureView,
     bind_group: wgpu::BindGroup,
     light_count: u32,
     ambient: [f32; 3],
@@ -136,22 +138,27 @@ impl Raster {
         };
         let driver =
             Some(info.driver_info.trim()).filter(|driver| !driver.is_empty() && *driver != info.name);
-        let parts = [Some(info.name.as_str()), Some(kind), Some(backend.as_str()), driver];
+        // Browsers keep the name to themselves.
+        let name = Some(info.name.trim()).filter(|name| !name.is_empty());
+        let parts = [name, Some(kind), Some(backend.as_str()), driver];
         parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
     }
 
     /// Takes a scene, and its draft where it has one.
     pub fn load(&mut self, packed: &Packed, draft: Option<&Packed>, pictures: &Pictures, style: &Resolved) {
         let device = &self.state.device;
+        let heights = &pictures.heights;
         let pictures = self.picture_layers(pictures);
-        let frames = self.table(packed.frames.concat());
-        let bind_group = self.tables(&packed.frame, style, &pictures, &frames);
+        let mut places = Places::new(heights, &packed.colors, &packed.frames);
+        let place_table = self.table(std::mem::take(&mut places.texels));
+        let bind_group = self.tables(&packed.frame, style, &pictures, &places, &place_table);
         self.loaded = Some(Loaded {
             frame: packed.frame,
             shapes: HeldShapes::new(device, packed),
             draft: draft.filter(|_| self.slow).map(|draft| HeldShapes::new(device, draft)),
             pictures,
-            frames,
+            places,
+            place_table,
             bind_group,
             light_count: style.lights.len() as u32,
             ambient: style.ambient.to_array().map(|x| x as f32),
@@ -163,7 +170,8 @@ impl Raster {
     /// Takes other lights, materials and colours.
     pub fn restyle(&mut self, style: &Resolved) {
         let Some(mut loaded) = self.loaded.take() else { return };
-        loaded.bind_group = self.tables(&loaded.frame, style, &loaded.pictures, &loaded.frames);
+        let Loaded { frame, pictures, places, place_table, .. } = &loaded;
+        loaded.bind_group = self.tables(frame, style, pictures, places, place_table);
         loaded.light_count = style.lights.len() as u32;
         loaded.ambient = style.ambient.to_array().map(|x| x as f32);
         loaded.background = style.background;
@@ -336,10 +344,11 @@ impl Raster {
         frame: &ViewFrame,
         style: &Resolved,
         pictures: &wgpu::TextureView,
-        frames: &wgpu::TextureView,
+        places: &Places,
+        place_table: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
         let device = &self.state.device;
-        let materials = self.table(tables::materials(&style.materials));
+        let materials = self.table(tables::materials(&style.materials, places));
         let lights = self.table(tables::lights(&style.lights, &style.tints, frame));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -351,7 +360,7 @@ impl Raster {
                 entry(2, wgpu::BindingResource::TextureView(&lights)),
                 entry(3, wgpu::BindingResource::TextureView(pictures)),
                 entry(4, wgpu::BindingResource::Sampler(&self.pipelines.sampler)),
-                entry(5, wgpu::BindingResource::TextureView(frames)),
+                entry(5, wgpu::BindingResource::TextureView(place_table)),
             ],
         })
     }
@@ -449,7 +458,12 @@ fn uniforms(loaded: &Loaded, camera: &Camera, size: [u32; 2]) -> Uniforms {
         up: four(right.cross(ahead), tan_height),
         ahead: four(ahead, NEAR),
         ambient: [r, g, b, 0.0],
-        counts: [loaded.light_count, tables::WIDTH as u32, 0, 0],
+        counts: [
+            loaded.light_count,
+            tables::WIDTH as u32,
+            loaded.places.first_color,
+            loaded.places.first_frame,
+        ],
         permutation: tables::permutation(),
     }
 }

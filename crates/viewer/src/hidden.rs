@@ -154,6 +154,25 @@ pub fn without(whole: &Resolved, hidden: &Hidden) -> Resolved {
     Resolved { runs, tree, shape_count: count, ..whole.clone() }
 }
 
+/// What is left of a scene where its shapes are kept elsewhere: all but the files, the runs and the transforms.
+pub fn without_shapes(whole: &Resolved) -> Resolved {
+    Resolved {
+        camera: whole.camera,
+        background: whole.background,
+        secondary_background: whole.secondary_background,
+        ambient: whole.ambient,
+        lights: whole.lights.clone(),
+        tints: whole.tints.clone(),
+        materials: whole.materials.clone(),
+        textures: whole.textures.clone(),
+        frames: Vec::new(),
+        runs: Vec::new(),
+        tree: whole.tree.clone(),
+        shape_count: 0,
+        files: Vec::new(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,7 +14,9 @@ use dotray_geometry::Vec2;
 use dotray_geometry::Vec3;
 use dotray_scene::Resolved;
 use dotray_scene::bounds::world_bounds;
+use dotray_scene::model::Color;
 use dotray_scene::resolved::Run;
+use dotray_scene::resolved::RunColors;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -70,9 +72,15 @@ pub struct Corner {
     pub texcoord: [f32; 2],
     /// The number of its material.
     pub material: u32,
-    /// The number of its frame.
+    /// The number of its frame; from [`COLORED`] on that of its colour in [`Packed::colors`], where the frame's is too.
     pub frame: u32,
 }
+
+/// See [`Corner::frame`].
+pub const COLORED: u32 = 1 << 31;
+
+/// So many corners have colours of their own at most: the others show their material's.
+const MOST_COLORS: usize = 1 << 20;
 
 /// Things of one kind that a GPU holds in one buffer.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,6 +108,8 @@ pub struct Packed {
     pub triangles: Vec<Batch<[Corner; 3]>>,
     /// The rows of `object_from_view` of each frame, where a material has 3-D textures or bumps: else nothing.
     pub frames: Vec<[[f32; 4]; 3]>,
+    /// Colours of triangles' corners where they have some of their own: red, green, blue, and the number of the frame.
+    pub colors: Vec<[f32; 4]>,
 }
 
 /// Bytes of a batch: GPUs refuse buffers of any size.
@@ -140,6 +150,8 @@ struct Placed<'a> {
     frame_number: u32,
     /// Whether its colour depends on where on it one looks.
     textured: bool,
+    /// Those of a triangle's corners.
+    colors: Option<[Color; 3]>,
 }
 
 /// How many shapes one thread lays down at a time.
@@ -174,15 +186,34 @@ impl Packed {
     }
 
     fn nothing(frame: ViewFrame, bounds: Aabb) -> Self {
-        let (balls, rounds, boxes, triangles, frames) = Default::default();
-        Self { frame, bounds, balls, rounds, boxes, triangles, frames }
+        let (balls, rounds, boxes, triangles, frames, colors) = Default::default();
+        Self { frame, bounds, balls, rounds, boxes, triangles, frames, colors }
     }
 
-    fn append(&mut self, piece: Self) {
+    fn append(&mut self, mut piece: Self) {
+        self.take_colors(&mut piece);
         append(&mut self.balls, piece.balls);
         append(&mut self.rounds, piece.rounds);
         append(&mut self.boxes, piece.boxes);
         append(&mut self.triangles, piece.triangles);
+    }
+
+    /// The colours of the shapes that follow; where there are too many, their corners do without.
+    fn take_colors(&mut self, piece: &mut Self) {
+        if piece.colors.is_empty() {
+            return;
+        }
+        let first = self.colors.len();
+        let fits = first + piece.colors.len() <= MOST_COLORS;
+        for corner in piece.triangles.iter_mut().flat_map(|batch| &mut batch.things).flatten() {
+            if let Some(color) = corner.frame.checked_sub(COLORED) {
+                let frame = piece.colors.get(color as usize).map_or(0, |color| color[3] as u32);
+                corner.frame = if fits { corner.frame + first as u32 } else { frame };
+            }
+        }
+        if fits {
+            self.colors.append(&mut piece.colors);
+        }
     }
 
     /// Lays down those shapes of a run that are among `shapes`.
@@ -201,7 +232,13 @@ impl Packed {
                 .is_some_and(|m| m.texture.is_some() || !m.procedural.is_empty());
             if let Some(shape) = file.shape(run.kind, entry) {
                 let number = run.first_shape + within;
-                self.shape(&shape, &Placed { number, material, frame, frame_number: run.frame, textured });
+                let colors = match run.colors {
+                    RunColors::Vertices => file.corner_colors(entry),
+                    // No file has them.
+                    RunColors::No | RunColors::Shapes { .. } => None,
+                };
+                let frame_number = run.frame;
+                self.shape(&shape, &Placed { number, material, frame, frame_number, textured, colors });
             }
         }
     }
@@ -263,11 +300,15 @@ impl Packed {
         let texcoords = triangle.texcoords();
         let normals = triangle.normals().map(|normal| if normal == Vec3::ZERO { face } else { normal });
         let corner = |point: Vec3, normal, texcoord| self.corner(point, normal, texcoord, placed);
-        let corners = [
+        let mut corners = [
             corner(*a, normals[0], texcoords[0]),
             corner(*b, normals[1], texcoords[1]),
             corner(*c, normals[2], texcoords[2]),
         ];
+        for (corner, color) in corners.iter_mut().zip(placed.colors.iter().flatten()) {
+            corner.frame = COLORED + self.colors.len() as u32;
+            self.colors.push(color.extend(f64::from(placed.frame_number)).to_array().map(|x| x as f32));
+        }
         put(&mut self.triangles, placed.number, corners);
     }
 
@@ -292,7 +333,7 @@ impl Packed {
             let out = Vec3::new(libm::sin(u), 0.0, libm::cos(u));
             let normal = out * libm::cos(v) + Vec3::Y * libm::sin(v);
             let point = torus.center() + out * torus.ring() + normal * torus.tube();
-            self.corner(point, normal, Vec2::new(s, t), placed)
+            self.corner(point, normal, Vec2::new(s + 0.5, 0.5 - t), placed)
         };
         let mut corners = Vec::new();
         for i in 0..AROUND {

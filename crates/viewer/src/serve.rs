@@ -165,6 +165,8 @@ fn respond(
         "X-Content-Type-Options: nosniff",
         "Cross-Origin-Resource-Policy: same-origin",
         "Cross-Origin-Opener-Policy: same-origin",
+        // With this one the page may share memory with its tracers.
+        "Cross-Origin-Embedder-Policy: require-corp",
     ];
     for line in always.iter().chain(more) {
         head.push_str(line);

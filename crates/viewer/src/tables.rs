@@ -1,5 +1,6 @@
 //! Materials and lights as rows of four numbers, which a shader reads from a texture: so their number has no limit.
 
+use crate::pictures::Heights;
 use dotray_geometry::Vec3;
 use dotray_render::noise::PERMUTATION;
 use dotray_scene::model::Attenuation;
@@ -9,6 +10,7 @@ use dotray_scene::procedural::Bump;
 use dotray_scene::procedural::Pattern;
 use dotray_scene::procedural::Procedural;
 use dotray_scene::resolved::ResolvedMaterial;
+use std::collections::BTreeMap;
 
 /// Texels a material takes.
 pub const MATERIAL_TEXELS: usize = 4;
@@ -44,16 +46,52 @@ fn texel(v: Vec3, w: f64) -> [f32; 4] {
     v.extend(w).to_array().map(|x| x.clamp(-1e30, 1e30) as f32)
 }
 
+/// What is looked up besides materials and lights, in one table: the heights of images, four a texel; the colours of
+/// triangles' corners, each with the number of its frame; the rows of frames, three each.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    /// The table.
+    pub texels: Vec<[f32; 4]>,
+    /// Where the colours begin.
+    pub first_color: u32,
+    /// Where the frames begin.
+    pub first_frame: u32,
+    /// By texture: where its heights begin and how many columns and rows there are; half a texel of its file.
+    heights: BTreeMap<u32, [Vec3; 2]>,
+}
+
+impl Places {
+    /// Of all these.
+    pub fn new(heights: &[Heights], colors: &[[f32; 4]], frames: &[[[f32; 4]; 3]]) -> Self {
+        let mut places = Self::default();
+        for image in heights {
+            let first = places.texels.len() as f64;
+            let [columns, rows] = image.kept.map(|edge| edge as f64);
+            let [width, height] = image.size.map(|edge| edge as f64);
+            let half = Vec3::new(0.5 / width, 0.5 / height, 0.0);
+            places.heights.insert(image.texture, [Vec3::new(first, columns, rows), half]);
+            let four = |some: &[f32]| std::array::from_fn(|at| some.get(at).copied().unwrap_or(0.0));
+            places.texels.extend(image.brightness.chunks(4).map(four));
+        }
+        places.first_color = places.texels.len() as u32;
+        places.texels.extend_from_slice(colors);
+        places.first_frame = places.texels.len() as u32;
+        places.texels.extend(frames.iter().flatten());
+        places
+    }
+}
+
 /// The materials, each of [`MATERIAL_TEXELS`] texels, and behind them the clauses of their 3-D textures and bumps, each
 /// of [`CLAUSE_TEXELS`]: its kind, scale, octaves and height; a colour, and whether another one follows; the other
-/// colour.
-pub fn materials(materials: &[ResolvedMaterial]) -> Vec<[f32; 4]> {
+/// colour. Of an image, whose place is not among `places` where it could not be read: its kind, and where its heights
+/// are; half a texel, and whether another one follows; how far it leans.
+pub fn materials(materials: &[ResolvedMaterial], places: &Places) -> Vec<[f32; 4]> {
     let mut clauses = Vec::new();
     let first = MATERIAL_TEXELS * materials.len();
     let mut row = |material: &ResolvedMaterial| {
         let texture = material.texture.map_or(-1.0, f64::from);
         let before = clauses.len();
-        clauses.extend(clauses_of(&material.procedural));
+        clauses.extend(clauses_of(&material.procedural, places));
         let carving = if clauses.len() == before { -1.0 } else { (first + before) as f64 };
         [
             texel(material.ambient, material.shininess),
@@ -67,8 +105,7 @@ pub fn materials(materials: &[ResolvedMaterial]) -> Vec<[f32; 4]> {
     texels
 }
 
-/// The clauses that the shader knows: slopes of images are not among them.
-fn clauses_of(procedural: &Procedural) -> Vec<[f32; 4]> {
+fn clauses_of(procedural: &Procedural, places: &Places) -> Vec<[f32; 4]> {
     let head = |kind: f64, scale: f64, octaves: u32, height: f64| {
         texel(Vec3::new(kind, scale, f64::from(octaves)), height)
     };
@@ -86,7 +123,12 @@ fn clauses_of(procedural: &Procedural) -> Vec<[f32; 4]> {
         Bump::Noise { scale, octaves, height } => {
             Some([head(4.0, scale, octaves, height), texel(Vec3::ZERO, 1.0), texel(Vec3::ZERO, 0.0)])
         }
-        Bump::Image { .. } => None,
+        Bump::Image { texture, scale } => {
+            let [heights, half] = *places.heights.get(&texture)?;
+            let [first, columns, rows] = heights.to_array();
+            let head = texel(Vec3::new(5.0, first, columns), rows);
+            Some([head, texel(half, 1.0), texel(Vec3::ZERO.with_x(scale), 0.0)])
+        }
     });
     let mut clauses: Vec<[[f32; 4]; CLAUSE_TEXELS]> = solids.chain(bumps).collect();
     if let Some([_, [_, _, _, more], _]) = clauses.last_mut() {

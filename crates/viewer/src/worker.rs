@@ -43,7 +43,7 @@ fn given(name: &str) -> Option<JsValue> {
     get(&js_sys::global(), "rayview").and_then(|given| get(&given, name))
 }
 
-/// Whether the page has something that cannot wait; it costs about a millisecond to know.
+/// Whether the page has something that cannot wait; it costs about a millisecond to know where no memory is shared.
 fn is_stopped() -> bool {
     let stopped = given("stopped").and_then(|stopped| stopped.dyn_into::<js_sys::Function>().ok());
     stopped.is_some_and(|stopped| stopped.call0(&JsValue::NULL).is_ok_and(|stopped| stopped.is_truthy()))

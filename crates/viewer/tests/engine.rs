@@ -1,5 +1,6 @@
 //! The tracer behind the screen gives the renderer's own bytes, and lets go at once.
 
+use dotray_accel::Kind;
 use dotray_image::EncodeOptions;
 use dotray_image::Format;
 use dotray_image::Image;
@@ -19,6 +20,7 @@ use rayview::engine::Engine;
 use rayview::engine::Reply;
 use rayview::engine::Request;
 use rayview::hidden::Hidden;
+use rayview::hidden::without_shapes;
 use std::path::Path;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -225,12 +227,13 @@ fn hidden_shapes_are_left_out() {
     let prepared =
         |resolved| Box::new(World::prepare(resolved, &Disk, &PrepareOptions::default()).expect("a world"));
     let whole = read("whole.ray", &text(&[])).resolved;
-    let world = prepared(whole.clone());
+    let rest = Box::new(without_shapes(&whole));
+    let world = prepared(whole);
     let request = |serial| request(&world, serial, Options { width: 90, height: 60, ..Options::default() });
     let requests: Vec<_> = (0..6).map(request).collect();
     let mut engine = Engine::default();
     engine.handle(Command::World(Some(world)));
-    engine.handle(Command::Whole(Box::new(whole), PrepareOptions::default()));
+    engine.handle(Command::Rest(rest, PrepareOptions::default()));
     let rendered = |text: &str, style: Option<&Resolved>| {
         let mut world = prepared(read("part.ray", text).resolved);
         style.inspect(|style| world.restyle(style));
@@ -281,4 +284,38 @@ fn options_that_make_no_sense_are_refused() {
         matches!(engine.handle(Command::Draw(request)).as_slice(), [Reply::Refused(why)] if why.contains("width"))
     );
     assert!(!engine.is_busy());
+}
+
+/// Shapes are kept once: a world that is taken apart gives back the very lists that it was built of.
+#[test]
+fn a_scene_taken_apart_is_as_it_was_read() {
+    let folders = [scene("."), scene("dialects")];
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).expect("a folder"));
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "ray" || ending == "scene"));
+    let mut count = 0;
+    for path in paths {
+        // One is on purpose as somebody once printed it.
+        let Ok(opened) = open(&path, &Disk) else { continue };
+        let read = opened.resolved;
+        count += 1;
+        for kind in [Kind::Bvh, Kind::Octree] {
+            let prepare = PrepareOptions { accel: kind, ..PrepareOptions::default() };
+            let world = World::prepare(read.clone(), &Disk, &prepare).expect("a world");
+            let (whole, _) = world.take_apart(without_shapes(&read));
+            assert_eq!(
+                (whole.shape_count, &whole.runs),
+                (read.shape_count, &read.runs),
+                "{}",
+                path.display()
+            );
+            assert_eq!(whole.frames, read.frames, "{}", path.display());
+            assert_eq!((&whole.tree, &whole.materials), (&read.tree, &read.materials));
+            for (file, mut before) in whole.files.into_iter().zip(read.files.clone()) {
+                (before.items, before.groups) = (Vec::new(), Vec::new());
+                assert!(file == before, "{}: {} is another file", path.display(), before.path.display());
+            }
+        }
+    }
+    assert!(count > 20, "{count} scenes");
 }

@@ -217,6 +217,89 @@ fn textures_in_space_and_bumps_are_drawn_as_they_are_traced() {
     }
 }
 
+/// An image of hills of no special size.
+fn hills() -> Vec<u8> {
+    let height = |x: usize, y: usize| {
+        0.5 + 0.25 * (x as f32 * 6.0 * std::f32::consts::TAU / 52.0).sin()
+            + 0.25 * (y as f32 * std::f32::consts::TAU / 9.0).cos()
+    };
+    let samples: Vec<f32> = (0..9 * 52).flat_map(|at| [height(at % 52, at / 52); 3]).collect();
+    let image = Image::from_samples(52, 9, dotray_image::Channels::Rgb, samples).expect("an image");
+    encode(&image, Format::Png, &EncodeOptions::default()).expect("a file")
+}
+
+/// An image that leans the normals of one of each shape, as they are and in frames of all sorts.
+#[test]
+fn images_that_lean_normals_are_drawn_as_they_are_traced() {
+    let Some(mut raster) = raster() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("leaning.ray");
+    std::fs::write(folder.path().join("hills.png"), hills()).expect("written");
+    let row = "#sphere -m rock -u SCALE -- -4 0 0 .6  #box -m rock -u SCALE -- -2.6 0 0 1 1.1 .9
+        #cylinder -m rock -u SCALE -c -- -1.2 0 -.5 .5 1.1  #cylinder -m rock -u SCALE -- .2 0 -.5 .5 1.1
+        #cone -m rock -u SCALE -c -- 1.5 0 -.5 .6 1.2  #cone -m rock -u SCALE -- 2.8 0 -.5 .5 1
+        #torus -m rock -u SCALE -- 4.1 0 0 .5 .2
+        #triangle -m rock -u SCALE -- 4.7 -.5 0  5.9 -.5 .2  5.2 .6 0  0 0  1.5 .2  .4 1\n";
+    let text = format!(
+        "#version HMCCS155FALL2005 #background .2 .3 .5 #ambient .5 .5 .5 #camera 0 0 11 0 0 -1 0 1 0 22
+        #light_point -n lamp -- .5 .5 .4 3 5 7 1 0 0 #light_dir -n sun -- .4 .4 .5 1 -.6 -1
+        #material -n rock -u hills.png -- .3 .2 .2 .8 .6 .4 .4 .4 .4 0 0 0 .15 0 1
+        #group_begin -n up -- #translate 0 2.6 0 #rotate 35 1 0 0\n{row}#group_end
+        #group_begin -n within -- #rotate -30 1 .4 0 #scale 1 1.6 .8\n{row}#group_end
+        #group_begin -n down -- #translate 0 -2.6 0 #rotate 50 1 0 0 #scale -1 1 1\n{row}#group_end\n#rayfile_end"
+    );
+    for (name, scale) in [("hills", "2.5"), ("pits", "-1")] {
+        std::fs::write(&path, text.replace("SCALE", scale)).expect("written");
+        let picture = drawn_as_traced(&mut raster, name, opened(&path), 0.01);
+        std::fs::write(&path, text.replace("SCALE", "0")).expect("written");
+        let smooth = unlike(&format!("{name}-smooth"), &picture, &rendered(opened(&path)));
+        assert!(smooth > 0.05, "{name}: {smooth}");
+    }
+}
+
+/// Triangles whose corners have colours of their own, some with a texture in space besides.
+#[test]
+fn colours_of_vertices_are_drawn_as_they_are_traced() {
+    let Some(mut raster) = raster() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("colours.scene");
+    let mut text = "#camera 0 2 9 0 -.2 -1 0 1 0 24\n#background .1 .1 .2\n#ambient .4 .4 .4
+        #shader \"V.vert\" \"VertexColour\"
+        #light_num 1
+        #light_point .8 .8 .7 3 5 6 1 0 0\n#material_num 2
+        #material .2 .2 .2 .7 .7 .7 .3 .3 .3 0 0 0 .2 0 1 -1 !!
+        #material 0 0 0 0 0 0 .2 .2 .2 0 0 0 .2 0 1 -1 !marble scale=2!\n"
+        .to_owned();
+    let (columns, rows) = (12, 8);
+    text += &format!("#vertex_num {}\n", columns * rows);
+    for at in 0..columns * rows {
+        let (x, y) = (f64::from(at % columns), f64::from(at / columns));
+        let z = (x * 0.7).sin() * 0.5 + (y * 0.9).cos() * 0.4;
+        let color = [x / 11.0, y / 7.0, 0.5 + 0.5 * (x * y * 0.1).sin()];
+        text += &format!(
+            "#vertex {} {} {z} 0 0 1 0 0 {} {} {}\n",
+            x * 0.6 - 3.3,
+            y * 0.6 - 2.0,
+            color[0],
+            color[1],
+            color[2]
+        );
+    }
+    for group in ["1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "-.4 0 0 1 0 .4 .1 1.5 0 0 .4 2 0 0 0 1"] {
+        text += &format!("#group_begin {group}\n");
+        for at in (0..columns * (rows - 1)).filter(|at| at % columns != columns - 1) {
+            let material = at % 3 % 2;
+            text += &format!("#shape_triangle {material}\n{} {} {}\n", at, at + 1, at + columns + 1);
+            text += &format!("#shape_triangle {material}\n{} {} {}\n", at, at + columns + 1, at + columns);
+        }
+        text += "#group_end\n";
+    }
+    std::fs::write(&path, &text).expect("written");
+    let all = opened(&path);
+    assert!(!all.document.packed.colors.is_empty());
+    drawn_as_traced(&mut raster, "vertices", all, 0.005);
+}
+
 /// What is off the screen is not drawn, and nothing is missing for that.
 #[test]
 fn what_is_off_the_screen_is_left_out() {

@@ -2,9 +2,32 @@
 import start from "./rayview.js";
 
 const message = document.getElementById("message");
-const say = (text) => { message.textContent = text; };
 
-const stopped = (fault) =>
+// Where WebGPU has failed, the page begins anew under this mark, draws by WebGL2, and says so for a while.
+const MARK = "#webgl2";
+const instead = location.hash === MARK ? "WebGPU does not work in this browser: WebGL2 draws." : "";
+const say = (text) => { message.textContent = text || instead; };
+if (instead) setTimeout(() => { if (message.textContent === instead) message.textContent = ""; }, 15000);
+
+// Whether the application has a device of WebGPU.
+let drawsByWebGPU = false;
+const beginAnew = () => {
+  location.hash = MARK;
+  location.reload();
+};
+if (instead) {
+  Object.defineProperty(navigator, "gpu", { value: undefined });
+} else if (globalThis.GPUAdapter) {
+  const request = GPUAdapter.prototype.requestDevice;
+  GPUAdapter.prototype.requestDevice = async function (...more) {
+    const device = await request.apply(this, more);
+    drawsByWebGPU = true;
+    device.lost.then(({ reason }) => { if (reason !== "destroyed") beginAnew(); });
+    return device;
+  };
+}
+
+const stopped = (fault) => drawsByWebGPU ? beginAnew() :
   say(`The application has stopped; load the page again. Perhaps it needs more memory than there is. (${fault})`);
 addEventListener("error", (event) => stopped(event.message));
 addEventListener("unhandledrejection", (event) => stopped(event.reason));
@@ -16,23 +39,33 @@ const MOST = 8;
 const crew = (program) => new Promise((found) => {
   const threads = Math.min(Math.max(navigator.hardwareConcurrency || 1, 1), MOST);
   const channels = Array.from({ length: threads - 1 }, () => new MessageChannel());
+  // What cannot wait is counted where all tracers look now and then, and so stops what they trace. Pages that share no
+  // memory with threads, since their server does not part them from all others, withdraw an address instead, for which
+  // the tracers ask.
+  let turn = 0, address;
+  const count = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : undefined;
+  const cannotWait = () => {
+    turn += 1;
+    if (count) {
+      Atomics.store(count, 0, turn);
+    } else {
+      URL.revokeObjectURL(address);
+      address = URL.createObjectURL(new Blob(["."]));
+    }
+  };
   const begun = (message, ports) => {
     const worker = new Worker(new URL("tracer.js", import.meta.url), { type: "module" });
-    worker.postMessage({ program, ...message }, ports);
+    worker.postMessage({ program, count, ...message }, ports);
     return worker;
   };
   const ports = channels.map(({ port1 }) => port1);
   const leader = begun({ mates: ports }, ports);
   const mates = channels.map(({ port2 }) => begun({ leader: port2 }, [port2]));
-  // What cannot wait withdraws the address that all tracers ask for now and then, and so stops what they trace.
-  let turn = 0, address;
   const tracer = {
     threads,
     postMessage: (bytes, urgent) => {
       if (urgent) {
-        URL.revokeObjectURL(address);
-        address = URL.createObjectURL(new Blob(["."]));
-        turn += 1;
+        cannotWait();
         mates.forEach((mate) => mate.postMessage({ turn, address }));
       }
       leader.postMessage({ bytes, turn, address }, [bytes.buffer]);

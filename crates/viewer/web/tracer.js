@@ -2,7 +2,8 @@
 // those whom it leads, or of the one who leads it.
 import start from "./rayview.js";
 
-// The page withdraws this address when something cannot wait: the one thing that a thread can learn in the midst of work.
+// The page withdraws this address when something cannot wait: where it shares no memory, the one thing that a thread
+// can learn in the midst of work.
 let address;
 
 const reaches = (address) => {
@@ -31,12 +32,14 @@ port1.onmessage = () => waiting.shift()();
 const later = (call) => { waiting.push(call); port2.postMessage(0); };
 
 addEventListener("message", ({ data }) => {
-  if (data.address) {
+  if (data.turn) {
     address = data.address;
     globalThis.rayview.turn = data.turn;
   }
   if (data.program) {
-    const stopped = canBeStopped() ? () => Boolean(address) && !reaches(address) : undefined;
+    const asked = () => Boolean(address) && !reaches(address);
+    const counted = () => Atomics.load(data.count, 0) > globalThis.rayview.turn;
+    const stopped = data.count ? counted : canBeStopped() ? asked : undefined;
     Object.assign(globalThis.rayview, { mates: data.mates, leader: data.leader, later, stopped });
     start({ module_or_path: data.program });
   }

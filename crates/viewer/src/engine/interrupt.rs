@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering;
 use web_time::Instant;
 
 /// Microseconds between two questions whether to stop, where there is somebody to ask.
-const ASKED_EVERY: Range<u64> = 10_000..20_000;
+const ASKED_EVERY: Range<u64> = 1_000..12_000;
 
 /// Stops the tracer in the midst of a tile.
 pub struct Interrupt<'a> {

@@ -12,7 +12,7 @@ struct View {
     // Ahead; the distance of the near plane.
     ahead: vec4<f32>,
     ambient: vec4<f32>,
-    // The number of lights; texels in a row of the tables.
+    // The number of lights; texels in a row of the tables; where in `places` colours begin, and frames.
     counts: vec4<u32>,
     // That of the noise, four numbers a word.
     permutation: array<vec4<u32>, 16>,
@@ -23,8 +23,9 @@ struct View {
 @group(0) @binding(2) var lights: texture_2d<f32>;
 @group(0) @binding(3) var pictures: texture_2d_array<f32>;
 @group(0) @binding(4) var picture_sampler: sampler;
-// The rows of object_from_view, three a frame.
-@group(0) @binding(5) var frames: texture_2d<f32>;
+// Heights of images, four a texel; colours of corners, each with its frame's number; the rows of object_from_view,
+// three a frame.
+@group(0) @binding(5) var places: texture_2d<f32>;
 
 const NEVER: f32 = 3.0e38;
 
@@ -112,22 +113,110 @@ fn weight_of(kind: f32, q: vec3<f32>, octaves: f32) -> f32 {
     return select(0.0, 1.0, sum - 2.0 * floor(sum * 0.5) == 0.0);
 }
 
+// ---- images as heights
+
+// How texture coordinates run over a surface: as they do about the y axis of object space (0); along x on what y
+// stands on (1); as a step to the right and one up on the screen tell, which change the point and (s, t) so much (2).
+struct Course {
+    kind: u32,
+    right: vec3<f32>,
+    up: vec3<f32>,
+    st_right: vec2<f32>,
+    st_up: vec2<f32>,
+}
+
+fn course(kind: u32) -> Course {
+    return Course(kind, vec3<f32>(0.0), vec3<f32>(0.0), vec2<f32>(0.0), vec2<f32>(0.0));
+}
+
+struct Axes {
+    s: vec3<f32>,
+    t: vec3<f32>,
+}
+
+fn unit_or_zero(v: vec3<f32>) -> vec3<f32> {
+    let size = max(max(abs(v.x), abs(v.y)), abs(v.z));
+    if (size == 0.0) { return v; }
+    return normalize(v / size);
+}
+
+// The unit vectors of object space along which s and t grow fastest; 0 where they do not.
+fn axes_of(how: Course, x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, n: vec3<f32>) -> Axes {
+    if (how.kind < 2u) {
+        var s = vec3<f32>(1.0, 0.0, 0.0);
+        if (how.kind == 0u || abs(n.y) < 0.5) { s = unit_or_zero(vec3<f32>(n.z, 0.0, -n.x)); }
+        return Axes(s, cross(s, n));
+    }
+    var a = vec3<f32>(dot(x, how.right), dot(y, how.right), dot(z, how.right));
+    var b = vec3<f32>(dot(x, how.up), dot(y, how.up), dot(z, how.up));
+    let size = max(length(a), length(b));
+    a /= size;
+    b /= size;
+    let across = cross(a, b);
+    // What is 1 more along the one step and 0 along the other grows along these.
+    let first = cross(b, across);
+    let second = cross(across, a);
+    let s = first * how.st_right.x + second * how.st_up.x;
+    let t = first * how.st_right.y + second * how.st_up.y;
+    return Axes(unit_or_zero(s), unit_or_zero(t));
+}
+
+fn height_of(first: u32, texel: u32) -> f32 {
+    let four = row_of(places, first + (texel >> 2u));
+    return four[texel & 3u];
+}
+
+// The height about (s, t), between the four texels there; the picture repeats.
+fn height_at(first: u32, columns: u32, rows: u32, st: vec2<f32>) -> f32 {
+    let size = vec2<f32>(f32(columns), f32(rows));
+    let place = fract(st) * size - 0.5;
+    let low = floor(place);
+    let part = place - low;
+    let left = select(u32(max(low.x, 0.0)), columns - 1u, low.x < 0.0);
+    let up = select(u32(max(low.y, 0.0)), rows - 1u, low.y < 0.0);
+    let right = select(left + 1u, 0u, left + 1u >= columns);
+    let down = select(up + 1u, 0u, up + 1u >= rows);
+    let upper = mix(height_of(first, up * columns + left), height_of(first, up * columns + right), part.x);
+    let lower = mix(height_of(first, down * columns + left), height_of(first, down * columns + right), part.x);
+    return mix(upper, lower, part.y);
+}
+
+// How much higher it is a texel to the right, and one down.
+fn slopes_of(head: vec4<f32>, half: vec2<f32>, st: vec2<f32>) -> vec2<f32> {
+    let first = u32(head.y);
+    let columns = u32(head.z);
+    let rows = u32(head.w);
+    let right = vec2<f32>(half.x, 0.0);
+    let down = vec2<f32>(0.0, half.y);
+    return vec2<f32>(
+        height_at(first, columns, rows, st + right) - height_at(first, columns, rows, st - right),
+        height_at(first, columns, rows, st + down) - height_at(first, columns, rows, st - down),
+    );
+}
+
 struct Carved {
     color: vec3<f32>,
     normal: vec3<f32>,
 }
 
 // The product of the colours, and the unit normal leaned by the slopes.
-fn carved(first: f32, point: vec3<f32>, outward: vec3<f32>, frame: u32) -> Carved {
+fn carved(first: f32, point: vec3<f32>, outward: vec3<f32>, frame: u32, st: vec2<f32>, how: Course) -> Carved {
     var result: Carved;
     result.color = vec3<f32>(1.0);
     result.normal = outward;
     if (first < 0.0) { return result; }
-    let x = row_of(frames, frame * 3u);
-    let y = row_of(frames, frame * 3u + 1u);
-    let z = row_of(frames, frame * 3u + 2u);
+    let x = row_of(places, view.counts.w + frame * 3u);
+    let y = row_of(places, view.counts.w + frame * 3u + 1u);
+    let z = row_of(places, view.counts.w + frame * 3u + 2u);
     let h = vec4<f32>(point, 1.0);
     let p = vec3<f32>(dot(x, h), dot(y, h), dot(z, h));
+    let determinant = dot(x.xyz, cross(y.xyz, z.xyz));
+    let across = vec3<f32>(
+        dot(cross(y.xyz, z.xyz), outward),
+        dot(cross(z.xyz, x.xyz), outward),
+        dot(cross(x.xyz, y.xyz), outward),
+    );
+    let n = unit_or_zero(across * select(1.0, -1.0, determinant < 0.0));
     var slopes = vec3<f32>(0.0);
     var at = u32(first);
     for (var more = 1.0; more > 0.0; at += 3u) {
@@ -135,20 +224,17 @@ fn carved(first: f32, point: vec3<f32>, outward: vec3<f32>, frame: u32) -> Carve
         let one = row_of(materials, at + 1u);
         let two = row_of(materials, at + 2u);
         more = one.w;
-        if (head.x == 4.0) {
+        if (head.x == 5.0) {
+            let axes = axes_of(how, x.xyz, y.xyz, z.xyz, n);
+            let rise = slopes_of(head, one.xy, st) * two.x;
+            slopes += axes.s * rise.x + axes.t * rise.y;
+        } else if (head.x == 4.0) {
             slopes += octaves_of(p * head.y, head.z, false).xyz * (head.w * head.y);
         } else {
             result.color *= mix(two.rgb, one.rgb, weight_of(head.x, p * head.y, head.z));
         }
     }
     if (dot(slopes, slopes) > 0.0) {
-        let determinant = dot(x.xyz, cross(y.xyz, z.xyz));
-        let across = vec3<f32>(
-            dot(cross(y.xyz, z.xyz), outward),
-            dot(cross(z.xyz, x.xyz), outward),
-            dot(cross(x.xyz, y.xyz), outward),
-        );
-        let n = normalize(across * select(1.0, -1.0, determinant < 0.0));
         let leaned = n - (slopes - n * dot(slopes, n));
         result.normal = normalize(x.xyz * leaned.x + y.xyz * leaned.y + z.xyz * leaned.z);
     }
@@ -174,17 +260,24 @@ fn shade(
     st: vec2<f32>,
     material: u32,
     frame: u32,
+    how: Course,
+    // The surface's own colour, and whether it has one.
+    own: vec4<f32>,
 ) -> vec4<f32> {
     let d = normalize(ray);
     let straight = normalize(outward);
-    let ambient = row_of(materials, material * 4u + 0u);
-    let diffuse = row_of(materials, material * 4u + 1u);
+    var ambient = row_of(materials, material * 4u + 0u);
+    var diffuse = row_of(materials, material * 4u + 1u);
     let specular = row_of(materials, material * 4u + 2u);
     let emissive = row_of(materials, material * 4u + 3u);
+    if (own.w > 0.0) {
+        ambient = vec4<f32>(own.rgb, ambient.w);
+        diffuse = vec4<f32>(own.rgb, diffuse.w);
+    }
     let layer = max(i32(diffuse.w), 0);
     var texel = textureSampleLevel(pictures, picture_sampler, st, layer, 0.0).rgb;
     if (diffuse.w < 0.0) { texel = vec3<f32>(1.0); }
-    let carving = carved(specular.w, point, straight, frame);
+    let carving = carved(specular.w, point, straight, frame, st, how);
     texel *= carving.color;
     var n = carving.normal;
     if (dot(straight, d) > 0.0) { n = -n; }
@@ -237,6 +330,8 @@ fn corner_of(vertex: u32, low: vec2<f32>, high: vec2<f32>) -> vec2<f32> {
     let a = vec2<f32>(f32(vertex & 1u), f32(vertex >> 1u));
     return clamp(mix(low, high, a), vec2<f32>(-1.0), vec2<f32>(1.0));
 }
+
+const NO_COLOR: vec4<f32> = vec4<f32>(0.0);
 
 const NOWHERE: vec4<f32> = vec4<f32>(2.0, 2.0, 0.5, 1.0);
 
@@ -291,7 +386,8 @@ fn ball_fragment(in: Ball) -> Fragment {
     if (t < view.ahead.w) { discard; }
     let from_eye = ray * t;
     var out: Fragment;
-    out.color = shade(view.eye.xyz + from_eye, ray, from_eye - in.center.xyz, vec2<f32>(0.0), in.material, 0u);
+    let outward = from_eye - in.center.xyz;
+    out.color = shade(view.eye.xyz + from_eye, ray, outward, vec2<f32>(0.0), in.material, 0u, course(0u), NO_COLOR);
     out.depth = depth_at(ray, t);
     return out;
 }
@@ -442,7 +538,8 @@ fn solid_fragment(in: Solid) -> Fragment {
     let t = met.t + ahead;
     var out: Fragment;
     let st = unit_texture(p, in.which.y, met.face, in.radii);
-    out.color = shade(view.eye.xyz + ray * t, ray, normal, st, in.which.x, in.which.z);
+    let how = course(select(1u, 0u, met.face == 0u));
+    out.color = shade(view.eye.xyz + ray * t, ray, normal, st, in.which.x, in.which.z, how, NO_COLOR);
     out.depth = depth_at(ray, t);
     return out;
 }
@@ -456,6 +553,8 @@ struct Surface {
     @location(2) st: vec2<f32>,
     @location(3) @interpolate(flat, either) material: u32,
     @location(4) @interpolate(flat, either) frame: u32,
+    // Its own colour, and whether it has one.
+    @location(5) own: vec4<f32>,
 }
 
 fn box_texture(u: vec3<f32>, axis: u32, positive: bool) -> vec2<f32> {
@@ -512,10 +611,14 @@ fn box_vertex(
     out.st = box_texture(u, axis, positive);
     out.material = material;
     out.frame = frame;
+    out.own = NO_COLOR;
     return out;
 }
 
 // ---- triangles
+
+// From here on a frame's number is that of a colour, which has the frame's.
+const COLORED: u32 = 0x80000000u;
 
 @vertex
 fn corner_vertex(
@@ -535,12 +638,19 @@ fn corner_vertex(
     out.st = st;
     out.material = material;
     out.frame = frame;
+    out.own = NO_COLOR;
+    if (frame >= COLORED) {
+        let color = row_of(places, view.counts.z + frame - COLORED);
+        out.own = vec4<f32>(color.rgb, 1.0);
+        out.frame = u32(color.w);
+    }
     return out;
 }
 
 @fragment
 fn surface_fragment(in: Surface) -> @location(0) vec4<f32> {
-    return shade(in.point, in.point - view.eye.xyz, in.normal, in.st, in.material, in.frame);
+    let how = Course(2u, dpdx(in.point), dpdy(in.point), dpdx(in.st), dpdy(in.st));
+    return shade(in.point, in.point - view.eye.xyz, in.normal, in.st, in.material, in.frame, how, in.own);
 }
 
 // ---- lines

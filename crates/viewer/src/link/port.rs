@@ -105,7 +105,7 @@ impl Port {
     pub fn send(&self, command: Command) {
         self.ask(&match command {
             // Worlds are built where they are traced.
-            Command::World(_) | Command::Whole(..) | Command::Help(_) => return,
+            Command::World(_) | Command::Rest(..) | Command::Help(_) => return,
             Command::Hide(hidden) => Ask::Hide(hidden),
             Command::Style(style) => Ask::Style(Box::new(Style::of(&style))),
             Command::Draw(request) => Ask::Draw(request),

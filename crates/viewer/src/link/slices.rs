@@ -5,6 +5,7 @@ use super::News;
 use super::Teller;
 use crate::engine::Command;
 use crate::engine::Engine;
+use crate::hidden::without_shapes;
 use dotray_render::Textures;
 use dotray_scene::Resolved;
 use std::cell::RefCell;
@@ -35,10 +36,10 @@ impl Slices {
         if let Some(parts) = self.unbuilt.take() {
             let (asked, resolved, textures) = *parts;
             let start = Instant::now();
-            let (whole, prepare) = (Box::new(resolved.clone()), asked.prepare.clone());
+            let (rest, prepare) = (Box::new(without_shapes(&resolved)), asked.prepare.clone());
             if let Some(world) = teller.build(&asked, resolved, textures) {
                 self.send(Command::World(Some(world)));
-                self.send(Command::Whole(whole, prepare));
+                self.send(Command::Rest(rest, prepare));
                 teller.tell(News::Prepared(start.elapsed().as_secs_f64()));
             }
         }

@@ -5,6 +5,7 @@ use super::News;
 use super::Teller;
 use crate::engine::Command;
 use crate::engine::Engine;
+use crate::hidden::without_shapes;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering;
@@ -43,10 +44,10 @@ impl Desk {
         std::thread::spawn(move || {
             let Some((resolved, textures)) = teller.read(&asked, &*asked.source.files) else { return };
             let start = web_time::Instant::now();
-            let whole = Box::new(resolved.clone());
+            let rest = Box::new(without_shapes(&resolved));
             if let Some(world) = teller.build(&asked, resolved, textures) {
                 let _ = commands.send(Command::World(Some(world)));
-                let _ = commands.send(Command::Whole(whole, asked.prepare.clone()));
+                let _ = commands.send(Command::Rest(rest, asked.prepare.clone()));
                 teller.tell(News::Prepared(start.elapsed().as_secs_f64()));
             }
         });

@@ -1,4 +1,5 @@
-//! One page and its tracer: a socket, and a thread that traces.
+//! One page and its tracer: a socket, a thread that traces, and one that packs what goes to the page, so that nothing
+//! the page asks waits for a picture to be packed.
 
 use crate::bundle::Bundle;
 use crate::bundle::Recorder;
@@ -49,8 +50,8 @@ struct Session<'a> {
     scene: &'a Path,
     bundle: Current,
     watch: Option<Watch>,
-    /// The picture that was sent last.
-    before: Sent,
+    /// Where tells are packed.
+    packer: mpsc::Sender<Tell>,
 }
 
 /// Serves a page until it goes.
@@ -62,15 +63,17 @@ pub fn run(stream: TcpStream, scene: &Path) {
         WebSocketConfig::default().max_message_size(Some(MOST_ASKED)).max_frame_size(Some(MOST_ASKED));
     let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
     let bundle = Current::default();
-    let mut session = Session { socket, scene, bundle: bundle.clone(), watch: None, before: Sent::default() };
     let (asks, asked) = mpsc::channel();
-    let (teller, tells) = mpsc::channel();
+    let (teller, told) = mpsc::channel();
+    let (packer, packed) = mpsc::channel();
+    let mut session = Session { socket, scene, bundle: bundle.clone(), watch: None, packer: teller.clone() };
     let clerk = Clerk::default();
     let interrupt = clerk.interrupt();
     let tracer = std::thread::spawn(move || trace(clerk, &asked, &teller, &bundle));
+    std::thread::spawn(move || pack(&told, &packer));
     // Whoever does not listen any more has gone.
     let _ = session.send_scene();
-    while let Some(ask) = session.turn(&tells) {
+    while let Some(ask) = session.turn(&packed) {
         let Some(ask) = ask else { continue };
         let at_once = !matches!(ask, Ask::Look(..) | Ask::Shown);
         if asks.send(ask).is_err() {
@@ -87,9 +90,9 @@ pub fn run(stream: TcpStream, scene: &Path) {
 }
 
 impl Session<'_> {
-    /// Listens for a moment, then sends what the tracer has; what the page asks of the tracer comes back, and `None`
+    /// Listens for a moment, then sends what was packed; what the page asks of the tracer comes back, and `None`
     /// where the page is gone.
-    fn turn(&mut self, tells: &mpsc::Receiver<Tell>) -> Option<Option<Ask>> {
+    fn turn(&mut self, packed: &mpsc::Receiver<Vec<u8>>) -> Option<Option<Ask>> {
         let ask = match self.socket.read() {
             Ok(Message::Binary(bytes)) => {
                 // Whoever sends anything else is no page of ours.
@@ -105,8 +108,9 @@ impl Session<'_> {
             }
             Err(_) => return None,
         };
-        for tell in tells.try_iter().collect::<Vec<_>>() {
-            self.send(tell)?;
+        // One at a time: the next thing that the page asks may wait already.
+        if let Ok(bytes) = packed.try_recv() {
+            self.socket.send(Message::binary(bytes)).ok()?;
         }
         if matches!(self.watch.as_mut().map(Watch::changed), Some(Ok(true))) {
             self.send_scene()?;
@@ -164,20 +168,29 @@ impl Session<'_> {
         let paths = bundle.paths();
         let paths = paths.iter().map(|path| path.as_path()).chain([self.scene]);
         self.watch = Watch::new(paths, wake);
-        let files = bundle.files();
-        if files == current(&self.bundle).files() {
+        if bundle.is_same(&current(&self.bundle)) {
             return Some(());
         }
+        let files = bundle.files();
         *self.bundle.lock().unwrap_or_else(PoisonError::into_inner) = bundle;
         let path = self.scene.to_string_lossy().into_owned();
         self.send(Tell::Scene { path, files })
     }
 
-    fn send(&mut self, tell: Tell) -> Option<()> {
+    fn send(&self, tell: Tell) -> Option<()> {
+        self.packer.send(tell).ok()
+    }
+}
+
+/// The packer's thread: it ends with those who tell.
+fn pack(told: &mpsc::Receiver<Tell>, packed: &mpsc::Sender<Vec<u8>>) {
+    // The picture that was sent last.
+    let mut before = Sent::default();
+    for tell in told {
         let tell = match tell {
             Tell::Picture(sent) => {
-                let before = std::mem::replace(&mut self.before, Sent { film: None, ..(*sent).clone() });
-                Tell::Picture(Box::new(sent.against(&before)))
+                let last = std::mem::replace(&mut before, Sent { film: None, ..(*sent).clone() });
+                Tell::Picture(Box::new(sent.against(&last)))
             }
             Tell::Scene { .. }
             | Tell::Prepared(..)
@@ -189,8 +202,11 @@ impl Session<'_> {
             | Tell::Tracers(..)
             | Tell::Part(_) => tell,
         };
-        let packed = wire::packed(&wire::bytes(&tell));
-        self.socket.send(Message::binary(packed)).ok()
+        let bytes = wire::bytes(&tell);
+        drop(tell);
+        if packed.send(wire::packed(&bytes)).is_err() {
+            return;
+        }
     }
 }
 

@@ -52,14 +52,32 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
         pass
 
 
-@pytest.fixture(scope="session")
-def site():
-    """The page's files, as any server for files has them."""
-    handler = functools.partial(Quiet, directory=DIST)
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+class Apart(Quiet):
+    """Parts its pages from all others, which may then share memory with their threads."""
+
+    def end_headers(self):
+        self.send_header("Cross-Origin-Opener-Policy", "same-origin")
+        self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
+        super().end_headers()
+
+
+def served_by(handler):
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(handler, directory=DIST))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_port}/"
     server.shutdown()
+
+
+@pytest.fixture(scope="session")
+def site():
+    """The page's files, as any server for files has them."""
+    yield from served_by(Quiet)
+
+
+@pytest.fixture(scope="session")
+def apart():
+    """The same from a server that lets pages share memory."""
+    yield from served_by(Apart)
 
 
 @pytest.fixture(scope="session")

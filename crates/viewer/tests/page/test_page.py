@@ -3,6 +3,7 @@
 import time
 
 import numpy
+import pytest
 from conftest import SCENE, Viewer, cells, launched, pixels, rendered
 
 BOTH = {"shapes.ray": SCENE.encode(), "cells.png": cells()}
@@ -89,13 +90,15 @@ def test_several_tracers_make_the_picture_of_dotray_render(browser, site, scene)
     viewer.close()
 
 
-def test_a_move_is_heard_within_50_milliseconds(browser, site):
-    viewer = Viewer(browser, site, size=(800, 450), prepare=lambda page: page.add_init_script(SENT))
+@pytest.mark.parametrize("server", ["site", "apart"])
+def test_a_move_is_heard_within_50_milliseconds(browser, request, server):
+    viewer = Viewer(browser, request.getfixturevalue(server), size=(800, 450), prepare=lambda page: page.add_init_script(SENT))
     viewer.drop({"heavy.ray": HEAVY.encode()})
     viewer.wait("data-prepared", "true")
     viewer.wait("data-tracers", lambda count: count == str(len(viewer.page.workers)))
     for worker in viewer.page.workers:
         worker.evaluate(HEARD)
+    assert viewer.page.evaluate("crossOriginIsolated") == (server == "apart")
     viewer.page.keyboard.press("t")
     # All of them are in the midst of heavy tiles.
     time.sleep(4)
@@ -116,6 +119,32 @@ def test_a_move_is_heard_within_50_milliseconds(browser, site):
     # Other programs may take the cores away for a while.
     assert waits[len(waits) * 3 // 4] < 50 and waits[-1] < 1000, waits
     viewer.close()
+
+
+# A device of WebGPU that draws by software.
+WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--use-vulkan=swiftshader"]
+WEBGPU += ["--enable-features=Vulkan,WebGPU", "--disable-vulkan-surface"]
+
+
+def test_where_webgpu_fails_webgl_draws_and_the_page_says_so(playwright, site, scene):
+    browser = launched(playwright, *WEBGPU)
+    # The browser takes the device away once the application has it, as where a driver has crashed.
+    lose = """if (globalThis.GPUAdapter) {
+        const request = GPUAdapter.prototype.requestDevice;
+        GPUAdapter.prototype.requestDevice = async function (...more) {
+            const device = await request.apply(this, more);
+            const lost = new Promise((lose) => setTimeout(lose, 1500, { reason: "unknown", message: "a crash" }));
+            Object.defineProperty(device, "lost", { value: lost });
+            return device;
+        };
+    }"""
+    viewer = Viewer(browser, site, prepare=lambda page: page.add_init_script(lose))
+    assert viewer.page.evaluate("'gpu' in navigator")
+    viewer.page.wait_for_url("**/#webgl2", timeout=60000)
+    viewer.page.wait_for_function("document.getElementById('message').textContent.includes('WebGL2')")
+    viewer.drop(BOTH)
+    assert (viewer.trace() == pixels(rendered(scene, "shapes.ray", viewer.view()[2:]))).all()
+    browser.close()
 
 
 def test_hidden_shapes_are_not_traced(viewer, scene):
