@@ -14,9 +14,9 @@ pub const PIECE: usize = 1 << 15;
 
 /// An item while the tree grows: its box and its number, 32 bytes, one vector.
 ///
-/// Lanes 0 to 2 hold the smallest coordinates, lanes 4 to 6 the largest ones negated, so that one `min` joins two boxes.
-/// The number's bits stand in lane 3. They are only ever copied; bit 30 is flipped so that, whatever the number, they
-/// are a normal float and slow no arithmetic on the whole vector down.
+/// Lanes 0 to 2 hold the smallest coordinates, lanes 4 to 6 the largest ones negated, so that one `min` joins two
+/// boxes. The number's bits stand in lane 3. They are only ever copied; bit 30 is flipped so that, whatever the number,
+/// they are a normal float and slow no arithmetic on the whole vector down.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct Reference([f32; 8]);
