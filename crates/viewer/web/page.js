@@ -3,11 +3,16 @@ import start from "./rayview.js";
 
 const message = document.getElementById("message");
 
-// Where WebGPU has failed, the page begins anew under this mark, draws by WebGL2, and says so for a while.
+// Where WebGPU has failed, the page begins anew under this mark, draws by WebGL2, and says so for a while, but never over
+// a picture: what a hand does takes the words away.
 const MARK = "#webgl2";
 const instead = location.hash === MARK ? "WebGPU does not work in this browser: WebGL2 draws." : "";
 const say = (text) => { message.textContent = text || instead; };
-if (instead) setTimeout(() => { if (message.textContent === instead) message.textContent = ""; }, 15000);
+const heard = () => { if (message.textContent === instead) message.textContent = ""; };
+if (instead) {
+  setTimeout(heard, 15000);
+  for (const deed of ["drop", "pointerdown", "keydown"]) addEventListener(deed, heard, { capture: true });
+}
 
 // Whether the application has a device of WebGPU.
 let drawsByWebGPU = false;
