@@ -1,5 +1,6 @@
 //! The five accelerators behind one face.
 
+use crate::ahead;
 use crate::batch::Batch;
 use crate::box_tree;
 use crate::brute;
@@ -55,6 +56,9 @@ pub struct Built {
     /// lay its own data out in this order, so that a leaf is one block of memory.
     pub order: Option<Vec<u32>>,
 }
+
+/// Trees of as many nodes (3.5 MB), and the shapes in their leaves, do not fit the memory next to a processor.
+const FAR: usize = 1 << 14;
 
 impl Accelerator {
     /// Builds over `boxes`. The result does not depend on the number of threads.
@@ -127,6 +131,11 @@ impl Accelerator {
         matches!(self.structure, Structure::Tree(_))
     }
 
+    /// Whether it, and what its leaves hold, is so large that walks wait for memory, and it helps to ask in advance.
+    pub fn is_far(&self) -> bool {
+        matches!(&self.structure, Structure::Tree(tree) if ahead::HELPS && tree.nodes.len() >= FAR)
+    }
+
     /// Every leaf that its walks show as a block: the first position and the count. Each position lies in one of them.
     /// None of an accelerator that shows no blocks.
     pub fn each_leaf(&self, leaf: &mut dyn FnMut(u32, u32)) {
@@ -192,6 +201,10 @@ impl Accelerator {
     pub fn walk<B: Batch>(&self, level: Level, queries: &Queries<'_>, batch: &mut B) {
         match &self.structure {
             Structure::Brute => brute::walk(self.items, queries, batch),
+            Structure::Tree(tree) if self.is_far() && bvh::turns::start_apart(queries, &self.bounds) => {
+                let mut stack = vec![0; bvh::turns::WALKERS * (tree.stack + WIDTH)];
+                dispatch!(level, simd => bvh::turns::walk(simd, tree, &mut stack, queries, batch));
+            }
             Structure::Tree(tree) => {
                 // Only scenes with very deeply nested groups ask for more than fits the fixed stack.
                 let (mut fixed, mut grown) = ([0; MAX_STACK + WIDTH], Vec::new());

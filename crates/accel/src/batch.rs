@@ -39,6 +39,12 @@ pub trait Batch {
         self.leaf_range(i, first, count, t_max)
     }
 
+    /// The same items will be asked for soon: what is known of them may be brought nearer.
+    #[inline(always)]
+    fn expect(&self, first: u32, count: u32) {
+        let _ = (first, count);
+    }
+
     /// Tests the items at positions `first .. first + count` for the rays of the groups `active` (bit by bit) of a
     /// packet, as `leaf_range` does for one, and sets their new bounds ([`Packet::set_t_max`]). Returns whether any
     /// bound has changed.

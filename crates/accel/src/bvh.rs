@@ -18,6 +18,8 @@ pub mod refit;
 
 pub mod walk;
 
+pub mod turns;
+
 pub mod beam;
 
 pub use build::Builder;

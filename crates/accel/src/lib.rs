@@ -54,6 +54,8 @@
 
 pub mod simd;
 
+pub mod ahead;
+
 pub mod input;
 
 pub mod query;

@@ -312,6 +312,37 @@ fn all_but_brute_force_save_ten_times_the_work() {
 }
 
 #[test]
+fn rays_in_turn_do_what_each_does_alone() {
+    let scene = spheres(500_000, 2.0, 19);
+    let built = build(Kind::Bvh, &scene, &[]);
+    assert!(built.accelerator.is_far() || !dotray_accel::ahead::HELPS);
+    let mut random = Random::new(20);
+    // Some miss the scene and never begin.
+    let mut queries: Vec<_> =
+        (0..1000).map(|_| query(random.point() * random.between(0.5, 3.0), random.direction())).collect();
+    queries.extend(hard_rays(&scene, 500, 21));
+    for level in available_levels() {
+        for (any, count) in
+            [(false, queries.len()), (true, queries.len()), (false, 6), (false, 5), (false, 3)]
+        {
+            let queries = &queries[..count];
+            let mut turns = Rays::new(&scene, built.order.as_deref(), queries, any);
+            walk(&built, level, &mut turns, false);
+            let (mut best, mut tests) = (Vec::new(), (0, 0));
+            for query in queries.chunks(1) {
+                let mut alone = Rays::new(&scene, built.order.as_deref(), query, any);
+                walk(&built, level, &mut alone, false);
+                best.extend(alone.best);
+                tests = (tests.0 + alone.item_tests, tests.1 + alone.box_tests);
+            }
+            assert_eq!(turns.best, best, "{}", level_name(level));
+            assert_eq!((turns.item_tests, turns.box_tests), tests, "{}", level_name(level));
+            assert_eq!(turns.finished, queries.len());
+        }
+    }
+}
+
+#[test]
 fn cells_are_shown_level_by_level() {
     let scene = spheres(3_000, 2.0, 19);
     let within = |inner: &Aabb, outer: &Aabb| {

@@ -13,6 +13,7 @@ use crate::bvh::partition::Member;
 use crate::bvh::partition::PIECE;
 use crate::bvh::partition::Reference;
 use crate::bvh::partition::Span;
+use crate::bvh::partition::runs;
 use crate::simd::Level;
 use crate::simd::Simd;
 use crate::simd::dispatch;
@@ -140,10 +141,8 @@ impl Table {
 pub struct Clusters {
     /// The clusters, to be put in order.
     pub clusters: Vec<Cluster>,
-    /// The cell of each reference.
+    /// The cell of each reference, in lists of one length, but for the last.
     cells: Vec<Vec<u32>>,
-    /// So many references have their cells in one list.
-    piece: usize,
     /// So many cells there are.
     count: usize,
 }
@@ -185,7 +184,7 @@ impl Clusters {
         let held = table.extents.iter().zip(&table.counts).enumerate();
         let clusters = held.filter(|(_, (_, count))| **count > 0).map(cluster).collect();
         let count = table.counts.len();
-        Some(Self { clusters, cells, piece, count })
+        Some(Self { clusters, cells, count })
     }
 
     /// Puts the references in the order in which their clusters stand now.
@@ -194,28 +193,25 @@ impl Clusters {
         let mut end = 0;
         // Each thread fills one part of the whole, which ends with a cluster, and passes all others over.
         let share = references.len().div_ceil(rayon::current_num_threads()).max(PIECE);
-        let mut parts = vec![0];
+        let (mut parts, mut first) = (Vec::new(), 0);
         for cluster in &self.clusters {
-            if end as usize >= parts.len() * share {
-                parts.push(end as usize);
-            }
             starts[cluster.cell as usize] = end;
             end += cluster.count;
+            if end as usize - first >= share {
+                parts.push(first..end as usize);
+                first = end as usize;
+            }
         }
-        parts.push(references.len());
+        parts.push(first..references.len());
         let mut sorted = references.to_vec();
-        let mut rest = &mut sorted[..];
-        let mut slices = Vec::new();
-        for ends in parts.windows(2) {
-            let (slice, behind) = rest.split_at_mut(ends[1] - ends[0]);
-            slices.push((ends[0], slice));
-            rest = behind;
-        }
-        slices.into_par_iter().for_each(|(first, slice)| {
+        let piece = self.cells.first().map_or(1, Vec::len);
+        // Only the last part may be empty, and such have no slice.
+        let slices: Vec<_> = runs(&mut sorted, &parts).zip(&parts).collect();
+        slices.into_par_iter().for_each(|(slice, part)| {
             let mut next = starts.clone();
-            for (references, cells) in references.chunks(self.piece).zip(&self.cells) {
+            for (references, cells) in references.chunks(piece).zip(&self.cells) {
                 for (reference, &cell) in references.iter().zip(cells) {
-                    let place = (next[cell as usize] as usize).wrapping_sub(first);
+                    let place = (next[cell as usize] as usize).wrapping_sub(part.start);
                     if let Some(free) = slice.get_mut(place) {
                         *free = *reference;
                         next[cell as usize] += 1;

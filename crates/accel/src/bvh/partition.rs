@@ -71,7 +71,7 @@ impl Reference {
 
     /// Twice the centre of a box.
     #[inline(always)]
-    pub fn center<S: Simd>(_: S, bounds: f32x8<S>) -> f32x4<S> {
+    pub fn center<S: Simd>(bounds: f32x8<S>) -> f32x4<S> {
         let (low, high) = bounds.split();
         low - high
     }
@@ -170,7 +170,7 @@ impl Span {
         let (mut bounds, mut centers) = (Extent::EMPTY.vector(simd), Extent::EMPTY.vector(simd));
         for member in members {
             let member = member.reference().vector(simd);
-            let center = Reference::center(simd, member);
+            let center = Reference::center(member);
             bounds = bounds.min(member);
             centers = centers.min(center.combine(-center));
         }
@@ -258,8 +258,11 @@ fn exchange<T: Send>(members: &mut [T], middle: usize, counts: impl Iterator<Ite
     pairs.into_par_iter().for_each(|(a, b)| a.swap_with_slice(b));
 }
 
-/// The pieces of a slice that ascending ranges name.
-fn runs<'a, T>(mut slice: &'a mut [T], ranges: &[std::ops::Range<usize>]) -> std::vec::IntoIter<&'a mut [T]> {
+/// The pieces of a slice that ascending ranges name; empty ranges have none.
+pub fn runs<'a, T>(
+    mut slice: &'a mut [T],
+    ranges: &[std::ops::Range<usize>],
+) -> std::vec::IntoIter<&'a mut [T]> {
     let mut taken = 0;
     let mut runs = Vec::new();
     for range in ranges.iter().filter(|range| !range.is_empty()) {

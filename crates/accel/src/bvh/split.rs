@@ -124,7 +124,7 @@ impl<const N: usize> Bins<N> {
         let scale = f32x4::load_array(simd, self.scale);
         for member in members {
             let bounds = member.reference().vector(simd);
-            let place = (Reference::center(simd, bounds) - low) * scale - 0.5 + ROUNDING;
+            let place = (Reference::center(bounds) - low) * scale - 0.5 + ROUNDING;
             let place = (place.bitcast::<u32x4<S>>() & BIN_BITS).to_array();
             for axis in 0..3 {
                 let bin = place[axis] as usize % N;

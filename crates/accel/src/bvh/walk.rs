@@ -15,7 +15,7 @@ use crate::simd::prelude::*;
 
 /// A narrowed ray with its numbers spread over the lanes.
 #[derive(Clone, Copy)]
-struct SpreadRay<S: Simd> {
+pub struct SpreadRay<S: Simd> {
     inverse: [f32x8<S>; 3],
     inverse_far: [f32x8<S>; 3],
     near_offset: [f32x8<S>; 3],
@@ -25,7 +25,7 @@ struct SpreadRay<S: Simd> {
 
 impl<S: Simd> SpreadRay<S> {
     #[inline(always)]
-    fn new(simd: S, ray: &NarrowRay) -> Self {
+    pub fn new(simd: S, ray: &NarrowRay) -> Self {
         let spread =
             |[x, y, z]: [f32; 3]| [f32x8::splat(simd, x), f32x8::splat(simd, y), f32x8::splat(simd, z)];
         Self {
@@ -53,7 +53,7 @@ impl<S: Simd> SpreadRay<S> {
 
     /// Which of a node's boxes the ray meets at some t' in [0, bound] (bit by bit), and where it enters each.
     #[inline(always)]
-    fn meets(&self, simd: S, node: &WideNode, bound: f32) -> (u32, [f32; WIDTH]) {
+    pub fn meets(&self, simd: S, node: &WideNode, bound: f32) -> (u32, [f32; WIDTH]) {
         let near = [self.near(simd, node, 0), self.near(simd, node, 1), self.near(simd, node, 2)];
         let far = [self.far(simd, node, 0), self.far(simd, node, 1), self.far(simd, node, 2)];
         let enter = near[0].max(near[1]).max(near[2].max(f32x8::splat(simd, 0.0)));
@@ -100,7 +100,7 @@ pub fn walk<S: Simd, B: Batch>(
 
 /// The numbers of sixteen rays.
 #[inline(always)]
-fn numbers(first: usize) -> [u32; LANES] {
+pub fn numbers(first: usize) -> [u32; LANES] {
     let mut numbers = [first as u32; LANES];
     for (lane, number) in numbers.iter_mut().enumerate() {
         *number += lane as u32;
@@ -131,7 +131,7 @@ pub fn walk_ray<S: Simd, B: Batch>(
     let ray = SpreadRay::new(simd, &narrow);
     let mut nodes = 0;
     let mut top = 0;
-    'walk: loop {
+    loop {
         if child.is_leaf() {
             // A leaf: the caller tests the items, and may bring the bound nearer.
             let (first, count) = child.items();
@@ -153,26 +153,32 @@ pub fn walk_ray<S: Simd, B: Batch>(
                 continue;
             }
         }
-        // The next child that waits, unless a hit has been found in front of it.
-        loop {
-            if top == 0 {
-                break 'walk;
-            }
-            top -= 1;
-            let next = stack[top];
-            if f32::from_bits((next >> 32) as u32) <= narrow.bound {
-                child = Child(next as u32);
-                break;
-            }
+        match next_waiting(stack, &mut top, 0, narrow.bound) {
+            Some(next) => child = next,
+            None => break,
         }
     }
     (t_max, WIDTH as u64 * nodes)
 }
 
+/// Takes the next child that waits off the stack, unless a hit has been found in front of it: then the next but one,
+/// and so on.
+#[inline(always)]
+pub fn next_waiting(stack: &[u64], top: &mut usize, bottom: usize, bound: f32) -> Option<Child> {
+    while *top > bottom {
+        *top -= 1;
+        let next = stack[*top];
+        if f32::from_bits((next >> 32) as u32) <= bound {
+            return Some(Child(next as u32));
+        }
+    }
+    None
+}
+
 /// Puts a node's children that the ray meets (one at least) on the stack, the nearest on top; takes that one off
 /// again and returns it with the new top.
 #[inline(always)]
-fn stack_children(
+pub fn stack_children(
     stack: &mut [u64],
     mut top: usize,
     node: &WideNode,

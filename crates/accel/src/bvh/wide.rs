@@ -1,5 +1,6 @@
 //! The layout of a tree of eight-wide nodes.
 
+use crate::ahead;
 use crate::narrow::Frame;
 use crate::narrow::NarrowBox;
 
@@ -84,6 +85,12 @@ impl WideNode {
         planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
         children: [Child::ABSENT; WIDTH],
     };
+
+    /// Asks for all of it.
+    #[inline(always)]
+    pub fn expect(&self) {
+        ahead::fetch(&self.planes, 0, self.planes.len());
+    }
 
     /// Puts a child into a lane.
     pub fn set(&mut self, lane: usize, bounds: &NarrowBox, child: Child) {
