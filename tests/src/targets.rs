@@ -95,10 +95,7 @@ fn read(bytes: &[u8], dialect: Option<Dialect>) {
         let outcome = resolve_within(scene.clone(), &INSTANCES);
         diagnostics.extend(outcome.diagnostics);
         if let Some(resolved) = outcome.resolved {
-            assert!(
-                resolved.frames.iter().all(|frame| frame.world_from_object.is_finite()),
-                "matrices are finite"
-            );
+            assert!(resolved.frames.iter().all(|frame| frame.is_finite()), "matrices are finite");
             diagnostics.extend(lint(&resolved));
             let summary = summarize(&resolved).to_string();
             assert!(!summary.is_empty());

@@ -76,7 +76,7 @@ fn describe(resolved: &Resolved, sources: &Sources, number: u32) -> Option<Shape
         place: span.map_or_else(String::new, |span| sources.place(span)),
         groups: Vec::new(),
         material_place: material.map(|placed| sources.place(placed.span)),
-        bounds: shape.world_bounds(&frame.world_from_object),
+        bounds: shape.world_bounds(frame),
     })
 }
 

@@ -169,7 +169,7 @@ impl<'a> Tree<'a> {
         let (run, entry) = entry_of(self.resolved, number)?;
         let shape = self.file(run.file)?.shape(run.kind, entry)?;
         let frame = self.resolved.frames.get(run.frame as usize)?;
-        Some(shape.world_bounds(&frame.world_from_object))
+        Some(shape.world_bounds(frame))
     }
 
     /// A shape by number.

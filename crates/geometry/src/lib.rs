@@ -24,5 +24,5 @@ pub use shape::{
     Triangle,
 };
 pub use shape::{TriangleRay, face_normal, interpolated_normal, intersect_vertices};
-pub use transform::{SingularMatrix, Transform};
+pub use transform::{SingularMatrix, Transform, similarity_scale};
 pub use vector::{Affine, Mat3, Mat4, Vec2, Vec3, Vec4};

@@ -30,30 +30,27 @@ impl Transform {
         if !world_from_object.is_finite() {
             return Err(SingularMatrix);
         }
-        // Each row is brought to a size near 1 by a power of two, which rounds nothing: so neither deep chains of
-        // scalings nor very uneven ones make determinants overflow or vanish.
-        let m = world_from_object.matrix3;
-        let shifts = [m.row(0), m.row(1), m.row(2)].map(|row| -exponent(row.abs().max_element()));
-        let balance = |column: Vec3| scaled_by_powers(column, shifts);
-        let balanced = Mat3::from_cols(balance(m.x_axis), balance(m.y_axis), balance(m.z_axis));
-        let rows = balanced.row(0).length() * balanced.row(1).length() * balanced.row(2).length();
-        let well_conditioned = balanced.determinant().abs() > 1e-14 * rows;
+        let balanced = Balanced::new(&world_from_object.matrix3);
+        let m = &balanced.matrix;
+        let rows = m.row(0).length() * m.row(1).length() * m.row(2).length();
+        let well_conditioned = m.determinant().abs() > 1e-14 * rows;
         if !well_conditioned {
             return Err(SingularMatrix);
         }
-        // (S M)⁻¹ = M⁻¹ S⁻¹, so M⁻¹ has the columns of (S M)⁻¹ times the powers.
-        let inverse = balanced.inverse();
-        let unbalance = |column: Vec3, shift: i32| scaled_by_powers(column, [shift; 3]);
-        let matrix3 = Mat3::from_cols(
-            unbalance(inverse.x_axis, shifts[0]),
-            unbalance(inverse.y_axis, shifts[1]),
-            unbalance(inverse.z_axis, shifts[2]),
-        );
-        let object_from_world = Affine { matrix3, translation: -(matrix3 * world_from_object.translation) };
+        let object_from_world = balanced.inverse(world_from_object.translation);
         if !object_from_world.is_finite() {
             return Err(SingularMatrix);
         }
         Ok(Self { world_from_object, object_from_world })
+    }
+
+    /// The transform of a matrix that [`Transform::new`] has accepted before, without the inverse being kept: the very
+    /// same one.
+    #[inline]
+    pub fn again(world_from_object: Affine) -> Self {
+        let balanced = Balanced::new(&world_from_object.matrix3);
+        let object_from_world = balanced.inverse(world_from_object.translation);
+        Self { world_from_object, object_from_world }
     }
 
     /// An object-space normal as a unit vector of the world: by the inverse transpose, renormalised.
@@ -69,29 +66,87 @@ impl Transform {
         .normalize()
     }
 
-    /// The uniform scale of a similarity (rotation, reflection, one scale for all axes), or `None` where lengths
-    /// change with the direction by more than rounding (relative 1e-12).
+    /// The uniform scale of a similarity: see [`similarity_scale`].
     pub fn similarity_scale(&self) -> Option<f64> {
-        let m = &self.world_from_object.matrix3;
-        let (xx, yy, zz) = (m.x_axis.length_squared(), m.y_axis.length_squared(), m.z_axis.length_squared());
-        let (xy, yz, zx) = (m.x_axis.dot(m.y_axis), m.y_axis.dot(m.z_axis), m.z_axis.dot(m.x_axis));
-        let slack = 1e-12 * xx;
-        // Squares near the ends of f64's range tell nothing of the lengths.
-        let measurable = (1e-280..1e280).contains(&xx);
-        let even = (xx - yy).abs() <= slack && (xx - zz).abs() <= slack;
-        let square = xy.abs() <= slack && yz.abs() <= slack && zx.abs() <= slack;
-        (measurable && even && square).then(|| xx.sqrt())
+        similarity_scale(&self.world_from_object)
+    }
+}
+
+/// The uniform scale of a similarity (rotation, reflection, one scale for all axes), or `None` where lengths
+/// change with the direction by more than rounding (relative 1e-12). It is the length of the x axis's image.
+#[inline]
+pub fn similarity_scale(world_from_object: &Affine) -> Option<f64> {
+    let m = &world_from_object.matrix3;
+    let (xx, yy, zz) = (m.x_axis.length_squared(), m.y_axis.length_squared(), m.z_axis.length_squared());
+    let (xy, yz, zx) = (m.x_axis.dot(m.y_axis), m.y_axis.dot(m.z_axis), m.z_axis.dot(m.x_axis));
+    let slack = 1e-12 * xx;
+    // Squares near the ends of f64's range tell nothing of the lengths.
+    let measurable = (1e-280..1e280).contains(&xx);
+    let even = (xx - yy).abs() <= slack && (xx - zz).abs() <= slack;
+    let square = xy.abs() <= slack && yz.abs() <= slack && zx.abs() <= slack;
+    (measurable && even && square).then(|| xx.sqrt())
+}
+
+/// A matrix whose rows have been brought to a size near 1 by powers of two, which rounds nothing: so neither deep
+/// chains of scalings nor very uneven ones make determinants overflow or vanish.
+struct Balanced {
+    matrix: Mat3,
+    /// The binary logarithm of what each row was multiplied by.
+    shifts: [i32; 3],
+}
+
+impl Balanced {
+    #[inline]
+    fn new(m: &Mat3) -> Self {
+        let shifts = [m.row(0), m.row(1), m.row(2)].map(|row| -exponent(row.abs().max_element()));
+        if shifts == [0; 3] {
+            // As most turns are: whoever waits for the inverse need not wait for the powers first.
+            return Self { matrix: *m, shifts };
+        }
+        let balance = |column: Vec3| scaled_by_powers(column, shifts);
+        Self { matrix: Mat3::from_cols(balance(m.x_axis), balance(m.y_axis), balance(m.z_axis)), shifts }
+    }
+
+    /// The inverse of the map of which this is the matrix.
+    #[inline]
+    fn inverse(&self, translation: Vec3) -> Affine {
+        // (S M)⁻¹ = M⁻¹ S⁻¹, so M⁻¹ has the columns of (S M)⁻¹ times the powers.
+        let inverse = self.matrix.inverse();
+        let unbalance = |column: Vec3, shift: i32| scaled_by_powers(column, [shift; 3]);
+        let matrix3 = match self.shifts {
+            [0, 0, 0] => inverse,
+            [x, y, z] => Mat3::from_cols(
+                unbalance(inverse.x_axis, x),
+                unbalance(inverse.y_axis, y),
+                unbalance(inverse.z_axis, z),
+            ),
+        };
+        Affine { matrix3, translation: -(matrix3 * translation) }
     }
 }
 
 /// The power of two of `x`; 0 for 0.
+#[inline]
 fn exponent(x: f64) -> i32 {
-    libm::frexp(x).1
+    let biased = (x.to_bits() >> 52) as i32 & 0x7ff;
+    // Those of 0 and of what is smaller than any normal number do not stand there.
+    if biased == 0 { libm::frexp(x).1 } else { biased - 1022 }
 }
 
 /// The coordinates times 2 to the power of each shift.
+#[inline]
 fn scaled_by_powers(v: Vec3, shifts: [i32; 3]) -> Vec3 {
-    Vec3::new(libm::scalbn(v.x, shifts[0]), libm::scalbn(v.y, shifts[1]), libm::scalbn(v.z, shifts[2]))
+    Vec3::new(scaled(v.x, shifts[0]), scaled(v.y, shifts[1]), scaled(v.z, shifts[2]))
+}
+
+#[inline]
+fn scaled(x: f64, shift: i32) -> f64 {
+    // Most powers are numbers themselves.
+    if (-1022..=1023).contains(&shift) {
+        x * f64::from_bits(((shift + 1023) as u64) << 52)
+    } else {
+        libm::scalbn(x, shift)
+    }
 }
 
 #[cfg(test)]
@@ -139,6 +194,7 @@ mod tests {
         }
         let uneven = of_rows([[1e-90, 0.0, 0.0], [0.0, 1e90, 0.0], [0.0, 0.0, 1e-120]]).unwrap();
         assert!(defect(&uneven) < 1e-15);
+        assert_eq!(Transform::again(uneven.world_from_object), uneven);
     }
 
     #[test]
@@ -179,6 +235,18 @@ mod tests {
         assert!((world_normal.length() - 1.0).abs() < 1e-15);
     }
 
+    #[test]
+    fn powers_of_two_are_those_of_the_mathematical_library() {
+        let numbers = [0.0, -0.0, 1.0, -1.5, 0.75, 1e-310, 5e-324, 1e308, -3e-200, f64::MIN_POSITIVE];
+        for x in numbers {
+            assert_eq!(super::exponent(x), libm::frexp(x).1, "{x:e}");
+            for shift in [-1074, -1023, -1022, -1000, -53, -1, 0, 1, 60, 1023, 1024, 1100] {
+                let (ours, theirs) = (super::scaled(x, shift), libm::scalbn(x, shift));
+                assert_eq!(ours.to_bits(), theirs.to_bits(), "{x:e} by {shift}");
+            }
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(1000))]
 
@@ -193,6 +261,7 @@ mod tests {
             let point = Vec3::from_array(point);
             let back = transform.object_from_world.transform_point3(affine.transform_point3(point));
             prop_assert!((back - point).length() < 1e-10);
+            prop_assert_eq!(Transform::again(affine), transform);
         }
     }
 }

@@ -3,12 +3,19 @@
 //! A *position* is a place in the accelerator's order, so that a leaf is one block of memory; a *number* is the
 //! shape's place in the scene's file order, which decides ties.
 
+mod forms;
+
 use crate::cull::Culls;
-use crate::cull::Spine;
 use crate::form::Form;
 use crate::form::Slot;
-use crate::form::axis_aligned;
+use crate::own::OwnCuboid;
+use crate::own::OwnRound;
+use crate::own::OwnSphere;
+use crate::own::Spill;
+use crate::stretch::Stretch;
+use crate::stretch::Stretches;
 use dotray_accel::Accelerator;
+use dotray_accel::ahead;
 use dotray_accel::narrow::Frame;
 use dotray_geometry::Aabb;
 use dotray_geometry::Affine;
@@ -30,11 +37,16 @@ use rayon::prelude::*;
 /// The scene's own lists.
 #[derive(Debug, Default)]
 pub(crate) struct Lists {
-    pub runs: Vec<Run>,
+    /// The runs. Of those whose shapes are not alone in their groups, the transforms are numbered as in `frames` once
+    /// shapes have been laid down.
+    pub stretches: Stretches,
+    /// The matrices of all groups while shapes are laid down, as the scene numbers them.
+    pub matrices: Vec<Affine>,
+    /// The transforms of groups of more than one shape, and of shapes that have no form for one of their own.
     pub frames: Vec<Transform>,
+    /// The numbers that these transforms had in the scene; empty where they have kept them.
+    pub frame_numbers: Vec<u32>,
     pub files: Vec<SceneFile>,
-    /// Finds runs while shapes are laid down.
-    pub index: RunIndex,
     /// For each file whose triangles all stand in the world and have the same normals and texture coordinates, one of
     /// them: with the baked corners it says all that was written.
     pub patterns: Vec<Option<Triangle>>,
@@ -50,8 +62,8 @@ pub(crate) struct Baked {
     slots: Vec<Slot>,
     pub numbers: Vec<u32>,
     pub materials: Vec<u32>,
-    /// The run of each position; empty where there is only one run.
-    pub runs_of: Vec<u32>,
+    /// The stretch of each position; empty where there is only one.
+    pub stretches: Vec<u32>,
     pub spheres: Vec<Sphere>,
     pub cuboids: Vec<Cuboid>,
     pub cylinders: Vec<OrientedCylinder>,
@@ -62,77 +74,51 @@ pub(crate) struct Baked {
     pub framed_cylinders: Vec<Cylinder>,
     pub framed_cones: Vec<Cone>,
     pub framed_others: Vec<Shape>,
+    pub own_spheres: Vec<OwnSphere>,
+    pub own_cuboids: Vec<OwnCuboid>,
+    pub own_cylinders: Vec<OwnRound>,
+    pub own_cones: Vec<OwnRound>,
+    /// What some of the own forms do not hold.
+    pub spills: Vec<Spill>,
     pub culls: Culls,
 }
 
-/// Shape `number` of the scene, which stands in this run, in object coordinates.
-fn written_shape(run: &Run, files: &[SceneFile], number: u32) -> Shape {
-    let entry = (run.first + (number - run.first_shape)) as usize;
+/// Shape `entry` of the list of a run, in object coordinates.
+fn written_shape(run: &Run, files: &[SceneFile], entry: usize) -> Shape {
     // Resolving has checked that every entry of a run is a shape.
     files[run.file.0 as usize].shape(run.kind, entry).expect("a resolved run names shapes only")
 }
 
-/// The box in the world of shape `number`, which stands in this run.
-pub fn world_bounds(run: &Run, frames: &[Transform], files: &[SceneFile], number: u32) -> Aabb {
+/// The box in the world of shape `number`, which stands in this stretch.
+pub fn world_bounds(stretch: &Stretch, frames: &[Affine], files: &[SceneFile], number: u32) -> Aabb {
+    let (run, entry) = (&stretch.run, stretch.entry(number));
+    let file = &files[run.file.0 as usize];
     // Spheres in no group come by the million: no look at a transform for them.
     if run.kind == ShapeKind::Sphere && run.frame == 0 {
-        let entry = (run.first + (number - run.first_shape)) as usize;
-        return files[run.file.0 as usize].spheres.shapes[entry].bounds();
+        return file.spheres.shapes[entry].bounds();
     }
-    let shape = written_shape(run, files, number);
-    shape.world_bounds(&frames[run.frame as usize].world_from_object)
-}
-
-/// Finds the runs of shapes: where every shape stands in a group of its own, there are as many runs as shapes.
-#[derive(Debug, Default)]
-pub struct RunIndex {
-    /// The run of every so many-th shape, and the last run.
-    marks: Vec<u32>,
-}
-
-impl RunIndex {
-    /// The shapes from mark to mark.
-    const STEP: u32 = 16;
-
-    /// Over these runs of `count` shapes.
-    pub fn new(runs: &[Run], count: u32) -> Self {
-        let mut run = 0;
-        let mut holder = |number: u32| {
-            while runs.get(run + 1).is_some_and(|next| next.first_shape <= number) {
-                run += 1;
-            }
-            run as u32
-        };
-        let mut marks: Vec<_> = (0..count).step_by(Self::STEP as usize).map(&mut holder).collect();
-        marks.push(runs.len().saturating_sub(1) as u32);
-        Self { marks }
-    }
-
-    /// Which of the runs holds shape `number`.
-    #[inline]
-    pub fn find(&self, runs: &[Run], number: u32) -> usize {
-        if runs.len() == 1 {
-            return 0;
-        }
-        let mark = (number / Self::STEP) as usize;
-        let (first, last) = (self.marks[mark] as usize, self.marks[mark + 1] as usize);
-        // Where every shape is a run of its own, the search would wait for memory several times over.
-        let guess = (first + (number % Self::STEP) as usize).min(last);
-        if runs[guess].first_shape == number && runs[guess].count > 0 {
-            return guess;
-        }
-        first + runs[first..=last].partition_point(|run| run.first_shape <= number) - 1
+    let world_from_object = &frames[stretch.frame(number)];
+    match run.kind {
+        // Others of which there may be many: none is made a shape of any kind first.
+        ShapeKind::Cuboid => file.cuboids.shapes[entry].world_bounds(world_from_object),
+        ShapeKind::Cylinder => file.cylinders.shapes[entry].world_bounds(world_from_object),
+        ShapeKind::Cone => file.cones.shapes[entry].world_bounds(world_from_object),
+        ShapeKind::Sphere
+        | ShapeKind::Triangle
+        | ShapeKind::IndexedTriangle
+        | ShapeKind::Torus
+        | ShapeKind::Open => written_shape(run, files, entry).world_bounds(world_from_object),
     }
 }
 
-/// Puts a shape into the list of its form.
-fn put<T>(list: &mut Vec<T>, form: Form, value: T) -> Slot {
-    list.push(value);
-    Slot::new(form, list.len() - 1)
-}
+/// How many shapes one thread bakes at a time: what they are laid down in stays in a cache.
+const PIECE: usize = 1 << 12;
 
-/// How many shapes one thread bakes at a time.
-const PIECE: usize = 1 << 14;
+/// So many pieces there are for each thread before they are put together.
+const PIECES: usize = 4;
+
+/// How many of them are read before any is baked: what is read stays in the nearest cache.
+const BLOCK: usize = 1 << 7;
 
 impl Baked {
     /// Bakes the shapes of these numbers, one position after another. `material` turns a run and the number written
@@ -146,21 +132,15 @@ impl Baked {
         let mut all = Self::default();
         all.reserve(lists, numbers.len());
         all.reserve_forms(lists);
-        // A few pieces at a time, lest everything is there twice.
-        for pieces in numbers.chunks(PIECE * 4 * rayon::current_num_threads()) {
-            let piece = |numbers: &[u32]| {
-                let mut piece = Self::default();
-                piece.reserve(lists, numbers.len());
-                match lists.runs.first() {
-                    Some(run) if lists.runs.len() == 1 && run.kind == ShapeKind::Sphere && run.frame == 0 => {
-                        piece.push_spheres(lists, run, numbers, &material);
-                    }
-                    _ => numbers.iter().for_each(|&number| piece.push(lists, number, &material)),
-                }
-                piece
-            };
-            let baked: Vec<Self> = pieces.par_chunks(PIECE).map(piece).collect();
-            baked.into_iter().for_each(|piece| all.append(piece));
+        // A few pieces at a time, lest everything is there twice, and always the same ones, lest fresh memory is asked
+        // for again and again.
+        let mut pieces: Vec<_> =
+            (0..PIECES * rayon::current_num_threads()).map(|_| Self::default()).collect();
+        for numbers in numbers.chunks(PIECE * pieces.len()) {
+            numbers.par_chunks(PIECE).zip(pieces.par_iter_mut()).for_each(|(numbers, piece)| {
+                numbers.chunks(BLOCK).for_each(|block| piece.push_block(lists, block, &material));
+            });
+            pieces.iter_mut().for_each(|piece| all.append(piece));
         }
         all.finish(accelerator);
         all
@@ -171,87 +151,77 @@ impl Baked {
         self.slots.reserve_exact(count);
         self.numbers.reserve_exact(count);
         self.materials.reserve_exact(count);
-        if lists.runs.len() > 1 {
-            self.runs_of.reserve_exact(count);
+        if lists.stretches.list().len() > 1 {
+            self.stretches.reserve_exact(count);
         }
     }
 
-    /// Makes room in the lists of forms for the shapes that stand in no group, which are the most where there are
-    /// many: lists that grow by doubling would need twice the memory.
+    /// Makes room in the lists of forms for the shapes that stand in no group or alone in one, which are the most where
+    /// there are many: lists that grow by doubling would need twice the memory.
     fn reserve_forms(&mut self, lists: &Lists) {
-        let count = |wanted: &[ShapeKind]| -> usize {
-            let runs = lists.runs.iter().filter(|run| run.frame == 0 && wanted.contains(&run.kind));
-            runs.map(|run| run.count as usize).sum()
+        let count = |alone: bool, wanted: &[ShapeKind]| -> usize {
+            let of_these = |stretch: &&Stretch| {
+                stretch.alone == alone
+                    && (alone || stretch.run.frame == 0)
+                    && wanted.contains(&stretch.run.kind)
+            };
+            lists.stretches.list().iter().filter(of_these).map(|stretch| stretch.run.count as usize).sum()
         };
-        let (spheres, cuboids) = (count(&[ShapeKind::Sphere]), count(&[ShapeKind::Cuboid]));
-        let (cylinders, cones) = (count(&[ShapeKind::Cylinder]), count(&[ShapeKind::Cone]));
-        let triangles = count(&[ShapeKind::Triangle, ShapeKind::IndexedTriangle]);
+        let (spheres, cuboids) = (count(false, &[ShapeKind::Sphere]), count(false, &[ShapeKind::Cuboid]));
+        let (cylinders, cones) = (count(false, &[ShapeKind::Cylinder]), count(false, &[ShapeKind::Cone]));
+        let triangles = count(false, &[ShapeKind::Triangle, ShapeKind::IndexedTriangle]);
         self.spheres.reserve_exact(spheres);
         self.cuboids.reserve_exact(cuboids);
         self.cylinders.reserve_exact(cylinders);
         self.cones.reserve_exact(cones);
         self.triangles.reserve_exact(triangles);
+        let [own_spheres, own_cuboids, own_cylinders, own_cones] =
+            [ShapeKind::Sphere, ShapeKind::Cuboid, ShapeKind::Cylinder, ShapeKind::Cone]
+                .map(|kind| count(true, &[kind]));
+        self.own_spheres.reserve_exact(own_spheres);
+        self.own_cuboids.reserve_exact(own_cuboids);
+        self.own_cylinders.reserve_exact(own_cylinders);
+        self.own_cones.reserve_exact(own_cones);
         if lists.cull_frame.is_some() {
-            self.culls.reserve(spheres, triangles);
+            // A bar lies in a ball.
+            let bars = cylinders + own_cylinders + cones + own_cones;
+            let balls = spheres + own_spheres + bars;
+            self.culls.reserve([balls, bars, cuboids + own_cuboids, triangles]);
         }
     }
 
-    /// Appends shape `number` at the next position.
-    fn push(&mut self, lists: &Lists, number: u32, material: impl Fn(&Run, i32) -> u32) {
-        let run_index = lists.index.find(&lists.runs, number);
-        let run = &lists.runs[run_index];
-        let file = &lists.files[run.file.0 as usize];
-        let entry = (run.first + (number - run.first_shape)) as usize;
-        self.materials.push(material(run, file.shape_materials(run.kind)[entry]));
-        self.numbers.push(number);
-        if lists.runs.len() > 1 {
-            self.runs_of.push(run_index as u32);
-        }
-        let slot = if run.kind == ShapeKind::Sphere && run.frame == 0 {
-            let sphere = file.spheres.shapes[entry];
-            self.cull_ball(lists.cull_frame.as_ref(), sphere.center(), sphere.radius());
-            put(&mut self.spheres, Form::Sphere, sphere)
-        } else {
-            let shape = written_shape(run, &lists.files, number);
-            self.bake(lists, &shape, run.frame as usize)
-        };
-        self.slots.push(slot);
-    }
-
-    /// Appends spheres of a scene that has nothing else, list by list: they are read in the order of the leaves, each
-    /// from another place, and a short loop waits for many of them at once.
-    fn push_spheres(
-        &mut self,
-        lists: &Lists,
-        run: &Run,
-        numbers: &[u32],
-        material: impl Fn(&Run, i32) -> u32,
-    ) {
-        let file = &lists.files[run.file.0 as usize];
-        let entry = |number: &u32| (run.first + (number - run.first_shape)) as usize;
-        let (first, place) = (self.spheres.len(), self.slots.len());
-        let materials = file.shape_materials(run.kind);
-        self.spheres.reserve_exact(numbers.len());
-        self.spheres.extend(numbers.iter().map(|number| file.spheres.shapes[entry(number)]));
-        self.materials.extend(numbers.iter().map(|number| material(run, materials[entry(number)])));
-        self.numbers.extend_from_slice(numbers);
-        self.slots.extend((first..first + numbers.len()).map(|index| Slot::new(Form::Sphere, index)));
-        if let Some(frame) = &lists.cull_frame {
-            for (sphere, position) in self.spheres[first..].iter().zip(place..) {
-                self.culls.put_ball(frame, position, sphere.center(), sphere.radius());
+    /// Appends the shapes of these numbers at the next positions, as many at a time as follow each other in one
+    /// stretch.
+    fn push_block(&mut self, lists: &Lists, numbers: &[u32], material: &impl Fn(&Run, i32) -> u32) {
+        let mut rest = numbers;
+        while let Some(&number) = rest.first() {
+            let found = lists.stretches.find(number);
+            let stretch = &lists.stretches.list()[found];
+            let (start, end) = (stretch.run.first_shape, stretch.run.first_shape + stretch.run.count);
+            let count = rest.iter().take_while(|number| (start..end).contains(number)).count().max(1);
+            let (these, others) = rest.split_at(count);
+            if lists.stretches.list().len() > 1 {
+                self.stretches.extend(std::iter::repeat_n(found as u32, count));
             }
+            let run = &stretch.run;
+            let materials = lists.files[run.file.0 as usize].shape_materials(run.kind);
+            let material = |number: &u32| material(run, materials[stretch.entry(*number)]);
+            self.materials.extend(these.iter().map(material));
+            self.numbers.extend_from_slice(these);
+            self.push_forms(lists, stretch, these);
+            rest = others;
         }
     }
 
-    /// Appends the shapes of the positions that follow.
-    fn append(&mut self, mut piece: Self) {
+    /// Moves the shapes of the positions that follow here.
+    fn append(&mut self, piece: &mut Self) {
         let first = self.numbers.len();
         let lengths = Form::ALL.map(|form| self.len_of(form));
-        let moved = |slot: &Slot| Slot::new(slot.form(), slot.index() + lengths[slot.form() as usize]);
-        self.slots.extend(piece.slots.iter().map(moved));
+        let moved = |slot: Slot| Slot::new(slot.form(), slot.index() + lengths[slot.form() as usize]);
+        self.slots.extend(piece.slots.drain(..).map(moved));
         self.numbers.append(&mut piece.numbers);
         self.materials.append(&mut piece.materials);
-        self.runs_of.append(&mut piece.runs_of);
+        self.stretches.append(&mut piece.stretches);
         self.spheres.append(&mut piece.spheres);
         self.cuboids.append(&mut piece.cuboids);
         self.cylinders.append(&mut piece.cylinders);
@@ -262,7 +232,13 @@ impl Baked {
         self.framed_cylinders.append(&mut piece.framed_cylinders);
         self.framed_cones.append(&mut piece.framed_cones);
         self.framed_others.append(&mut piece.framed_others);
-        self.culls.append(first, piece.culls);
+        let spilled = self.spills.len();
+        self.own_spheres.extend(piece.own_spheres.drain(..).map(|own| own.moved(spilled)));
+        self.own_cuboids.extend(piece.own_cuboids.drain(..).map(|own| own.moved(spilled)));
+        self.own_cylinders.extend(piece.own_cylinders.drain(..).map(|own| own.moved(spilled)));
+        self.own_cones.extend(piece.own_cones.drain(..).map(|own| own.moved(spilled)));
+        self.spills.append(&mut piece.spills);
+        self.culls.append(first, &mut piece.culls);
     }
 
     fn len_of(&self, form: Form) -> usize {
@@ -277,6 +253,10 @@ impl Baked {
             Form::FramedCylinder => self.framed_cylinders.len(),
             Form::FramedCone => self.framed_cones.len(),
             Form::FramedOther => self.framed_others.len(),
+            Form::OwnSphere => self.own_spheres.len(),
+            Form::OwnCuboid => self.own_cuboids.len(),
+            Form::OwnCylinder => self.own_cylinders.len(),
+            Form::OwnCone => self.own_cones.len(),
         }
     }
 
@@ -295,6 +275,7 @@ impl Baked {
         self.cylinders.shrink_to_fit();
         self.cones.shrink_to_fit();
         self.triangles.shrink_to_fit();
+        self.spills.shrink_to_fit();
     }
 
     /// The form of the shape at `position` and its place in that form's list.
@@ -309,116 +290,28 @@ impl Baked {
         }
     }
 
-    fn bake(&mut self, lists: &Lists, shape: &Shape, frame: usize) -> Slot {
-        let transform = lists.frames[frame];
-        let culls = lists.cull_frame.as_ref();
-        let world_from_object = &transform.world_from_object;
-        let similarity = if frame == 0 { Some(1.0) } else { transform.similarity_scale() };
-        match shape {
-            Shape::Sphere(sphere) => self.bake_sphere(culls, shape, sphere, similarity, world_from_object),
-            Shape::Cuboid(cuboid) => {
-                self.cull_box(culls, shape, world_from_object);
-                match axis_aligned(cuboid, &transform) {
-                    Some(cuboid) => put(&mut self.cuboids, Form::Cuboid, cuboid),
-                    None => put(&mut self.framed_cuboids, Form::FramedCuboid, *cuboid),
-                }
-            }
-            Shape::Cylinder(cylinder) => match similarity {
-                Some(scale) => {
-                    let c = OrientedCylinder::from_object(cylinder, world_from_object, scale);
-                    self.cull_bar(culls, &Spine::along(c.base(), c.axis(), c.radius(), c.height()));
-                    put(&mut self.cylinders, Form::Cylinder, c)
-                }
-                None => {
-                    self.cull_framed_bar(
-                        culls,
-                        shape,
-                        world_from_object,
-                        cylinder.center(),
-                        cylinder.radius(),
-                    );
-                    put(&mut self.framed_cylinders, Form::FramedCylinder, *cylinder)
-                }
-            },
-            Shape::Cone(cone) => match similarity {
-                Some(scale) => {
-                    let c = OrientedCone::from_object(cone, world_from_object, scale);
-                    self.cull_bar(culls, &Spine::along(c.base(), c.axis(), c.widest(), c.height()));
-                    put(&mut self.cones, Form::Cone, c)
-                }
-                None => {
-                    self.cull_framed_bar(culls, shape, world_from_object, cone.center(), cone.widest());
-                    put(&mut self.framed_cones, Form::FramedCone, *cone)
-                }
-            },
-            Shape::Triangle(triangle) => {
-                let corners = triangle.vertices().map(|v| world_from_object.transform_point3(v));
-                if let Some(frame) = culls {
-                    self.culls.put_triangle(frame, self.slots.len(), &corners);
-                }
-                put(&mut self.triangles, Form::Triangle, corners)
-            }
-            Shape::Torus(_) | Shape::Open(_) => {
-                self.cull_box(culls, shape, world_from_object);
-                put(&mut self.framed_others, Form::FramedOther, *shape)
-            }
-        }
-    }
-
-    /// A sphere that stays one in the world, or an ellipsoid.
-    fn bake_sphere(
-        &mut self,
-        culls: Option<&Frame>,
-        shape: &Shape,
-        sphere: &Sphere,
-        similarity: Option<f64>,
-        world_from_object: &Affine,
-    ) -> Slot {
-        let in_world = similarity.and_then(|scale| {
-            Sphere::new(world_from_object.transform_point3(sphere.center()), sphere.radius() * scale).ok()
-        });
-        match in_world {
-            Some(sphere) => {
-                self.cull_ball(culls, sphere.center(), sphere.radius());
-                put(&mut self.spheres, Form::Sphere, sphere)
-            }
-            None => {
-                self.cull_box(culls, shape, world_from_object);
-                put(&mut self.framed_spheres, Form::FramedSphere, *sphere)
-            }
-        }
-    }
-
-    fn cull_ball(&mut self, frame: Option<&Frame>, center: Vec3, radius: f64) {
-        if let Some(frame) = frame {
-            self.culls.put_ball(frame, self.slots.len(), center, radius);
-        }
-    }
-
-    fn cull_box(&mut self, frame: Option<&Frame>, shape: &Shape, world_from_object: &Affine) {
-        if let Some(frame) = frame {
-            self.culls.put_box(frame, self.slots.len(), &shape.world_bounds(world_from_object));
-        }
-    }
-
-    fn cull_bar(&mut self, frame: Option<&Frame>, spine: &Spine) {
-        if let Some(frame) = frame {
-            self.culls.put_bar(frame, self.slots.len(), spine);
-        }
-    }
-
-    /// A cylinder or cone that a general map has squeezed.
-    fn cull_framed_bar(
-        &mut self,
-        frame: Option<&Frame>,
-        shape: &Shape,
-        world_from_object: &Affine,
-        center: Vec3,
-        radius: f64,
-    ) {
-        match Spine::new(world_from_object, &shape.world_bounds(world_from_object), center, radius) {
-            Some(spine) => self.cull_bar(frame, &spine),
-            None => self.cull_box(frame, shape, world_from_object),
+    /// Asks for what the tests of a leaf's shapes in double precision read.
+    #[inline(always)]
+    pub fn expect(&self, first: u32, count: u32) {
+        let (first, count) = (first as usize, count as usize);
+        match self.only {
+            Some(Form::Sphere) => ahead::fetch_some(&self.spheres, first, count),
+            Some(Form::Triangle) => ahead::fetch_some(&self.triangles, first, count),
+            Some(Form::Cylinder) => ahead::fetch_some(&self.cylinders, first, count),
+            Some(Form::Cone) => ahead::fetch_some(&self.cones, first, count),
+            Some(Form::Cuboid) => ahead::fetch_some(&self.cuboids, first, count),
+            Some(Form::OwnSphere) => ahead::fetch_some(&self.own_spheres, first, count),
+            Some(Form::OwnCuboid) => ahead::fetch_some(&self.own_cuboids, first, count),
+            Some(Form::OwnCylinder) => ahead::fetch_some(&self.own_cylinders, first, count),
+            Some(Form::OwnCone) => ahead::fetch_some(&self.own_cones, first, count),
+            Some(
+                Form::FramedSphere
+                | Form::FramedCuboid
+                | Form::FramedCylinder
+                | Form::FramedCone
+                | Form::FramedOther,
+            )
+            | None => ahead::fetch_some(&self.slots, first, count),
         }
     }
 
@@ -430,7 +323,7 @@ impl Baked {
         bytes(&self.slots)
             + bytes(&self.numbers)
             + bytes(&self.materials)
-            + bytes(&self.runs_of)
+            + bytes(&self.stretches)
             + bytes(&self.spheres)
             + bytes(&self.cuboids)
             + bytes(&self.cylinders)
@@ -441,31 +334,44 @@ impl Baked {
             + bytes(&self.framed_cylinders)
             + bytes(&self.framed_cones)
             + bytes(&self.framed_others)
+            + bytes(&self.own_spheres)
+            + bytes(&self.own_cuboids)
+            + bytes(&self.own_cylinders)
+            + bytes(&self.own_cones)
+            + bytes(&self.spills)
             + self.culls.memory()
     }
 }
 
 impl Lists {
-    /// Lets go of the lists as written that nobody asks for any more, once every shape has been laid down: all
-    /// materials, the spheres and boxes that stand in no group, whose baked form is the same, and such triangles if
-    /// all are dressed alike.
+    /// Lets go of what nobody asks for any more, once every shape has been laid down: all materials, the lists of kinds
+    /// of shapes whose baked form says the same (spheres and boxes that stand in no group, all that are alone in
+    /// theirs, triangles in no group that are dressed alike), and the transforms of shapes that are alone.
     pub fn let_go(&mut self) {
-        self.index = RunIndex::default();
-        for (index, file) in self.files.iter_mut().enumerate() {
-            let in_world = |kind: ShapeKind| {
-                let mut runs =
-                    self.runs.iter().filter(|run| run.file.0 as usize == index && run.kind == kind);
-                runs.all(|run| run.frame == 0)
-            };
-            if in_world(ShapeKind::Sphere) {
+        self.stretches.forget_shapes();
+        let mut asked_for = vec![[false; ShapeKind::ALL.len()]; self.files.len()];
+        for Stretch { run, alone } in self.stretches.list() {
+            let baked_as_written = run.frame == 0
+                && matches!(run.kind, ShapeKind::Sphere | ShapeKind::Cuboid | ShapeKind::Triangle);
+            asked_for[run.file.0 as usize][run.kind as usize] |= !(*alone || baked_as_written);
+        }
+        for (file, asked_for) in self.files.iter_mut().zip(asked_for) {
+            let asked_for = |kind: ShapeKind| asked_for[kind as usize];
+            if !asked_for(ShapeKind::Sphere) {
                 file.spheres.shapes = Vec::new();
             }
-            if in_world(ShapeKind::Cuboid) {
+            if !asked_for(ShapeKind::Cuboid) {
                 file.cuboids.shapes = Vec::new();
+            }
+            if !asked_for(ShapeKind::Cylinder) {
+                file.cylinders.shapes = Vec::new();
+            }
+            if !asked_for(ShapeKind::Cone) {
+                file.cones.shapes = Vec::new();
             }
             let triangles = &file.triangles.shapes;
             let pattern = triangles.first().copied().filter(|first| {
-                in_world(ShapeKind::Triangle)
+                !asked_for(ShapeKind::Triangle)
                     && triangles.par_iter().all(|other| first.is_dressed_like(other))
             });
             if pattern.is_some() {
@@ -484,39 +390,33 @@ impl Lists {
             file.items = Vec::new();
             file.groups = Vec::new();
         }
+        self.let_go_of_frames();
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::RunIndex;
-    use dotray_scene::model::ShapeKind;
-    use dotray_scene::resolved::Run;
-    use dotray_scene::resolved::RunColors;
-    use dotray_scene::span::FileId;
-
-    #[test]
-    fn every_shape_is_found_in_its_run() {
-        let lengths = [1, 1, 40, 3, 16, 1, 1, 1, 100, 15, 17, 1];
-        let mut runs: Vec<Run> = Vec::new();
-        let mut count = 0;
-        for length in lengths.into_iter().cycle().take(50) {
-            runs.push(Run {
-                file: FileId(0),
-                kind: ShapeKind::Sphere,
-                first: 0,
-                count: length,
-                frame: 0,
-                material_base: 0,
-                first_shape: count,
-                colors: RunColors::No,
-            });
-            count += length;
+    /// Keeps the transforms of groups in which no shape is alone, and numbers them anew.
+    fn let_go_of_frames(&mut self) {
+        let matrices = std::mem::take(&mut self.matrices);
+        // The world itself is number 0.
+        let transform = |(number, matrix)| match number {
+            0 => Transform::IDENTITY,
+            _ => Transform::again(matrix),
+        };
+        if self.stretches.list().iter().all(|stretch| !stretch.alone) {
+            self.frames = matrices.into_par_iter().enumerate().map(transform).collect();
+            return;
         }
-        let index = RunIndex::new(&runs, count);
-        for number in 0..count {
-            let run = &runs[index.find(&runs, number)];
-            assert!((run.first_shape..run.first_shape + run.count).contains(&number), "{number}: {run:?}");
+        let mut shared = vec![true; matrices.len()];
+        for stretch in self.stretches.list().iter().filter(|stretch| stretch.alone) {
+            let first = stretch.run.frame as usize;
+            shared[first..first + stretch.run.count as usize].fill(false);
+        }
+        self.frame_numbers =
+            (0_u32..).zip(&shared).filter(|(_, shared)| **shared).map(|(number, _)| number).collect();
+        let numbers = self.frame_numbers.iter().map(|&number| number as usize);
+        self.frames = numbers.map(|number| transform((number, matrices[number]))).collect();
+        for stretch in self.stretches.list_mut().iter_mut().filter(|stretch| !stretch.alone) {
+            let kept = self.frame_numbers.binary_search(&stretch.run.frame);
+            stretch.run.frame = kept.expect("a transform that is in use") as u32;
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Rays against shapes, without a picture: what a program needs that casts rays of its own.
 
-use crate::bake::RunIndex;
 use crate::bake::world_bounds;
 use crate::options::PrepareOptions;
 use crate::query::Crossing;
@@ -12,6 +11,7 @@ use crate::query::ShadowBuffers;
 use crate::query::UNBLOCKED;
 use crate::shapes::Shapes;
 use crate::shapes::WorldSurface;
+use crate::stretch::Stretches;
 use dotray_accel::Accelerator;
 use dotray_accel::Boxes;
 use dotray_accel::GroupEvent;
@@ -21,8 +21,8 @@ use dotray_accel::Queries;
 use dotray_accel::Settings;
 use dotray_accel::simd::level;
 use dotray_geometry::Aabb;
+use dotray_geometry::Affine;
 use dotray_geometry::Ray;
-use dotray_geometry::Transform;
 use dotray_scene::Resolved;
 use dotray_scene::model::SceneFile;
 use dotray_scene::resolved::Run;
@@ -56,9 +56,8 @@ pub struct Caster {
 
 /// The shapes' boxes in the world, by shape number.
 struct ShapeBoxes<'a> {
-    runs: &'a [Run],
-    index: RunIndex,
-    frames: &'a [Transform],
+    stretches: &'a Stretches,
+    frames: &'a [Affine],
     files: &'a [SceneFile],
     count: u32,
 }
@@ -69,8 +68,8 @@ impl Boxes for ShapeBoxes<'_> {
     }
 
     fn bounds(&self, item: u32) -> Aabb {
-        let run = &self.runs[self.index.find(self.runs, item)];
-        world_bounds(run, self.frames, self.files, item)
+        let stretch = &self.stretches.list()[self.stretches.find(item)];
+        world_bounds(stretch, self.frames, self.files, item)
     }
 }
 
@@ -110,9 +109,9 @@ impl Caster {
         former: Option<Self>,
     ) -> Self {
         let start = Instant::now();
+        let stretches = Stretches::new(&resolved.runs, resolved.frames.len(), resolved.shape_count);
         let boxes = ShapeBoxes {
-            runs: &resolved.runs,
-            index: RunIndex::new(&resolved.runs, resolved.shape_count),
+            stretches: &stretches,
             frames: &resolved.frames,
             files: &resolved.files,
             count: resolved.shape_count,
@@ -132,8 +131,10 @@ impl Caster {
 
         let start = Instant::now();
         let material = |run: &Run, written: i32| run.material(written).unwrap_or(default_material);
-        let Resolved { runs, frames, files, .. } = resolved;
-        let shapes = Shapes::bake(runs, frames, files, &numbers, Some(&accelerator), material);
+        let Resolved { frames, files, runs, tree, .. } = resolved;
+        // Neither says more than the stretches do.
+        drop((runs, tree));
+        let shapes = Shapes::bake_stretches(stretches, frames, files, &numbers, Some(&accelerator), material);
         seconds.push(("bake", start.elapsed().as_secs_f64()));
         Self { shapes, accelerator, seconds, level: level() }
     }

@@ -14,7 +14,9 @@
 //! arithmetic serves eight shapes of a leaf against one ray (lanes are shapes) and one shape against eight rays (lanes
 //! are rays), and a leaf touches few cache lines.
 
+use crate::spine::Spine;
 use dotray_accel::Accelerator;
+use dotray_accel::ahead;
 use dotray_accel::narrow::Frame;
 use dotray_accel::narrow::NarrowRay;
 use dotray_accel::packet::GROUPS;
@@ -26,7 +28,6 @@ use dotray_accel::simd::f32x8;
 use dotray_accel::simd::f32x16;
 use dotray_accel::simd::prelude::*;
 use dotray_geometry::Aabb;
-use dotray_geometry::Affine;
 use dotray_geometry::Vec3;
 
 /// See above: 128 u.
@@ -154,8 +155,8 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// Appends what was put down from position 0 on elsewhere, from `first` on.
-    fn append(&mut self, first: usize, mut other: Self) {
+    /// Moves what was put down from position 0 on elsewhere here, from `first` on.
+    fn append(&mut self, first: usize, other: &mut Self) {
         if !other.numbers.is_empty() {
             self.fill(first);
             self.numbers.append(&mut other.numbers);
@@ -182,6 +183,14 @@ impl<const N: usize> Table<N> {
             }
         });
         self.numbers.extend([0.0; SHAPES]);
+    }
+
+    /// Asks for the numbers of a leaf's shapes.
+    #[inline(always)]
+    fn expect(&self, first: usize, count: usize) {
+        if !self.numbers.is_empty() {
+            ahead::fetch(&self.numbers, N * first, N * count);
+        }
     }
 
     /// One number of every shape of a leaf, a lane each.
@@ -267,18 +276,20 @@ impl Culls {
         self.corners.put(position, joined(frame.point(corners[0]), edges));
     }
 
-    /// Makes room for as many balls and triangles, or for none of them.
-    pub fn reserve(&mut self, balls: usize, triangles: usize) {
+    /// Makes room for as many balls, bars, boxes and triangles, or for none of them.
+    pub fn reserve(&mut self, [balls, bars, boxes, triangles]: [usize; 4]) {
         self.balls.reserve(balls);
+        self.bars.reserve(bars);
+        self.boxes.reserve(boxes);
         self.corners.reserve(triangles);
     }
 
-    /// Appends what was put down from position 0 on elsewhere, from `position` on.
-    pub fn append(&mut self, position: usize, other: Self) {
-        self.balls.append(position, other.balls);
-        self.bars.append(position, other.bars);
-        self.boxes.append(position, other.boxes);
-        self.corners.append(position, other.corners);
+    /// Moves what was put down from position 0 on elsewhere here, from `position` on.
+    pub fn append(&mut self, position: usize, other: &mut Self) {
+        self.balls.append(position, &mut other.balls);
+        self.bars.append(position, &mut other.bars);
+        self.boxes.append(position, &mut other.boxes);
+        self.corners.append(position, &mut other.corners);
     }
 
     /// Ends the lists at `count` positions, and lays them out leaf by leaf.
@@ -293,6 +304,15 @@ impl Culls {
     pub fn memory(&self) -> u64 {
         let lists = [&self.balls.numbers, &self.bars.numbers, &self.boxes.numbers, &self.corners.numbers];
         lists.iter().map(|list| size_of_val(list.as_slice()) as u64).sum()
+    }
+
+    /// Asks for what [`Culls::block`] reads of a leaf.
+    #[inline(always)]
+    pub fn expect(&self, first: usize, count: usize) {
+        self.balls.expect(first, count);
+        self.bars.expect(first, count);
+        self.boxes.expect(first, count);
+        self.corners.expect(first, count);
     }
 
     /// Which of the shapes of the leaf of `count` positions from `first` on the ray may hit, bit by bit.
@@ -455,40 +475,4 @@ fn meets_triangle<S: Simd, V: Singles<S>>(
     // Where the ray runs along the plane, the sign of the volume may be wrong.
     let grazing = size.simd_le(plane_margin);
     (inside & in_time) | grazing
-}
-
-/// A line of the world that a shape lies around.
-#[derive(Clone, Copy, Debug)]
-pub struct Spine {
-    /// A point of the line: the middle of the shape's world box.
-    point: Vec3,
-    /// The line's direction, of length 1.
-    axis: Vec3,
-    /// How far the shape's points may be from the line.
-    radius: f64,
-    /// How far they may be from the point.
-    reach: f64,
-}
-
-impl Spine {
-    /// Around a cylinder or cone of the world from `base` along the unit vector `axis`.
-    pub fn along(base: Vec3, axis: Vec3, radius: f64, height: f64) -> Self {
-        let half = 0.5 * height;
-        Self { point: base + axis * half, axis, radius, reach: (radius * radius + half * half).sqrt() }
-    }
-
-    /// Around a cylinder or cone along the object's y axis whose world box is `bounds`: its discs become ellipses,
-    /// whose longer half axis is the radius times the larger singular value of the two other columns.
-    pub fn new(world_from_object: &Affine, bounds: &Aabb, center: Vec3, radius: f64) -> Option<Self> {
-        let m = &world_from_object.matrix3;
-        let (xx, zz, xz) = (m.x_axis.length_squared(), m.z_axis.length_squared(), m.x_axis.dot(m.z_axis));
-        let half_difference = 0.5 * (xx - zz);
-        let largest = 0.5 * (xx + zz) + (half_difference * half_difference + xz * xz).sqrt();
-        let axis = m.y_axis.try_normalize()?;
-        // The line goes through the shape's centre, which is not quite the middle of a cone's box.
-        let point = world_from_object.transform_point3(center);
-        let reach = (bounds.max - point).max(point - bounds.min).length();
-        let spine = Self { point, axis, radius: radius * largest.sqrt() * (1.0 + 1e-12), reach };
-        (spine.radius.is_finite() && reach.is_finite()).then_some(spine)
-    }
 }

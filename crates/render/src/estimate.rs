@@ -4,6 +4,7 @@ use crate::options::Options;
 use crate::options::PrepareOptions;
 use crate::stats::MemoryPart;
 use dotray_accel::Kind;
+use dotray_geometry::Affine;
 use dotray_geometry::Cuboid;
 use dotray_geometry::Shape;
 use dotray_geometry::Sphere;
@@ -17,8 +18,10 @@ use dotray_scene::resolved::Run;
 use dotray_scene::resolved::TreeEvent;
 use std::fmt;
 
-/// Numbers of shape, material and run, and the slot.
+/// Numbers of shape, material and stretch, and the slot.
 const PLACE: u64 = 16;
+/// A shape that is alone in its group, with the transform; now and then a little more.
+const OWN: u64 = 112;
 /// What rules spheres out in single precision: balls and boxes.
 const SPHERE_CULL: u64 = 40;
 /// What rules any shape out: balls, bars, boxes and corners.
@@ -38,7 +41,23 @@ fn baked(run: &Run) -> u64 {
         ShapeKind::Triangle | ShapeKind::IndexedTriangle => 72,
         ShapeKind::Torus | ShapeKind::Open => size_of::<Shape>(),
     };
-    u64::from(run.count) * (form as u64 + PLACE)
+    let own = if may_be_alone(run) { OWN } else { 0 };
+    u64::from(run.count) * ((form as u64).max(own) + PLACE)
+}
+
+/// Whether the shape may be alone in its group: then it is laid down with its transform.
+fn may_be_alone(run: &Run) -> bool {
+    let has_form = match run.kind {
+        ShapeKind::Sphere | ShapeKind::Cuboid | ShapeKind::Cylinder | ShapeKind::Cone => true,
+        ShapeKind::Triangle | ShapeKind::IndexedTriangle | ShapeKind::Torus | ShapeKind::Open => false,
+    };
+    has_form && run.frame != 0 && run.count == 1
+}
+
+/// How many transforms are kept for several shapes, at most.
+fn shared_frames(resolved: &Resolved) -> u64 {
+    let shared = resolved.runs.iter().filter(|run| run.frame != 0 && !may_be_alone(run)).count();
+    shared.min(resolved.frames.len()) as u64
 }
 
 fn bytes<T>(list: &[T]) -> u64 {
@@ -70,7 +89,8 @@ pub fn estimate(resolved: &Resolved, prepare: &PrepareOptions, options: Option<&
     let scene = written(&resolved.files)
         + resolved.files.iter().map(|file| bytes(&file.items) + bytes(&file.groups)).sum::<u64>()
         + (resolved.runs.len() * size_of::<Run>()) as u64
-        + (resolved.frames.len() * size_of::<Transform>()) as u64
+        + (resolved.frames.len() * size_of::<Affine>()) as u64
+        + shared_frames(resolved) * size_of::<Transform>() as u64
         + (resolved.tree.len() * 2 * size_of::<TreeEvent>()) as u64;
     let only_spheres = resolved.runs.iter().all(|run| run.kind == ShapeKind::Sphere);
     let cull = if only_spheres { SPHERE_CULL } else { ANY_CULL };

@@ -174,8 +174,8 @@ fn shapes(resolved: &Resolved) -> String {
         let Some(file) = resolved.files.get(run.file.0 as usize) else { continue };
         hash.whole(run.kind as u64);
         hash.whole(u64::from(run.count));
-        if let Some(frame) = resolved.frames.get(run.frame as usize) {
-            frame.world_from_object.to_cols_array().into_iter().for_each(|number| hash.number(number));
+        if let Some(world_from_object) = resolved.frames.get(run.frame as usize) {
+            world_from_object.to_cols_array().into_iter().for_each(|number| hash.number(number));
         }
         let written = file.shape_materials(run.kind);
         for entry in run.first..run.first + run.count {

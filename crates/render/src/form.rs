@@ -1,10 +1,11 @@
 //! The forms in which shapes are baked, and how a position tells its form.
 
+use dotray_geometry::Affine;
 use dotray_geometry::Cuboid;
-use dotray_geometry::Transform;
 use dotray_geometry::Vec3;
 
-/// In which form a shape was baked. Framed forms are tested in object coordinates with their run's transform.
+/// In which form a shape was baked. Framed forms are tested in object coordinates with their run's transform, own forms
+/// hold their transform themselves ([`crate::own`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     /// A sphere under a similarity.
@@ -27,10 +28,18 @@ pub(crate) enum Form {
     FramedCone,
     /// A shape that is rare, under any map.
     FramedOther,
+    /// A sphere or ellipsoid that stands alone in its group.
+    OwnSphere,
+    /// A box that stands alone in its group.
+    OwnCuboid,
+    /// A cylinder that stands alone in its group.
+    OwnCylinder,
+    /// A cone that stands alone in its group.
+    OwnCone,
 }
 
 impl Form {
-    pub(crate) const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 14] = [
         Self::Sphere,
         Self::Cuboid,
         Self::Cylinder,
@@ -41,6 +50,10 @@ impl Form {
         Self::FramedCylinder,
         Self::FramedCone,
         Self::FramedOther,
+        Self::OwnSphere,
+        Self::OwnCuboid,
+        Self::OwnCylinder,
+        Self::OwnCone,
     ];
 }
 
@@ -67,14 +80,14 @@ impl Slot {
     }
 }
 
-/// The box as a box of the world, where the frame only moves and stretches along the axes.
-pub(crate) fn axis_aligned(cuboid: &Cuboid, frame: &Transform) -> Option<Cuboid> {
-    let m = &frame.world_from_object.matrix3;
+/// The box as a box of the world, where the map only moves and stretches along the axes.
+pub(crate) fn axis_aligned(cuboid: &Cuboid, world_from_object: &Affine) -> Option<Cuboid> {
+    let m = &world_from_object.matrix3;
     let diagonal = Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z);
     let off_diagonal = [m.x_axis.y, m.x_axis.z, m.y_axis.x, m.y_axis.z, m.z_axis.x, m.z_axis.y];
     if off_diagonal.iter().any(|&v| v != 0.0) || !diagonal.cmpgt(Vec3::ZERO).all() {
         return None;
     }
-    let center = frame.world_from_object.transform_point3(cuboid.center());
+    let center = world_from_object.transform_point3(cuboid.center());
     Cuboid::new(center, cuboid.size() * diagonal).ok()
 }

@@ -33,9 +33,15 @@ pub mod light;
 
 mod ways;
 
+mod spine;
+
 mod cull;
 
 mod form;
+
+mod own;
+
+mod stretch;
 
 mod leaving;
 

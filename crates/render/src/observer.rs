@@ -32,6 +32,12 @@ pub trait Observer: Sync {
     fn cancelled(&self) -> bool {
         false
     }
+
+    /// Whether it must be asked soon again, whatever the scene costs: then no more rays travel together than are traced
+    /// in some milliseconds. The pixels are the same.
+    fn is_impatient(&self) -> bool {
+        false
+    }
 }
 
 /// Nobody watches.

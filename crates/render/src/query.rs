@@ -1,5 +1,6 @@
 //! The two questions that rays ask of the accelerator: what is nearest, and what lies between.
 
+use crate::own::Ready;
 use crate::shapes::Shapes;
 use dotray_accel::Batch;
 use dotray_accel::Queries;
@@ -84,8 +85,14 @@ impl<'a> NearestBatch<'a> {
     }
 
     /// Tests one shape; answers with the new upper bound of t.
-    #[inline(never)]
+    #[inline(always)]
     fn test(&mut self, i: usize, position: u32, t_max: f64) -> f64 {
+        self.test_ready(i, position, t_max, None)
+    }
+
+    /// The same for one that may have been made ready.
+    #[inline(never)]
+    fn test_ready(&mut self, i: usize, position: u32, t_max: f64, ready: Option<&Ready>) -> f64 {
         if leaves(self.left, i, position) {
             return t_max;
         }
@@ -93,7 +100,10 @@ impl<'a> NearestBatch<'a> {
         buffers.tests[i].shapes += 1;
         let triangle_ray = &buffers.triangle_rays[if buffers.triangle_rays.len() == 1 { 0 } else { i }];
         let query = self.queries.query(i);
-        let crossings = self.shapes.crossings(position, &query.ray, triangle_ray);
+        let crossings = match ready {
+            Some(ready) => ready.crossings(&query.ray),
+            None => self.shapes.crossings(position, &query.ray, triangle_ray),
+        };
         let Some(hit) = crossings.first_within(query.t_min, t_max) else { return t_max };
         let number = self.shapes.number(position);
         // An exact tie goes to the shape that stands first in the file.
@@ -123,8 +133,14 @@ impl Batch for NearestBatch<'_> {
         [first, count]: [u32; 2],
         t_max: f64,
     ) -> f64 {
+        self.shapes.expect_tests(first, count);
         let left = block(simd, self.shapes, narrow, first, count);
         bits(left).fold(t_max, |t_max, lane| self.test(i, first + lane, t_max))
+    }
+
+    #[inline(always)]
+    fn expect(&self, first: u32, count: u32) {
+        self.shapes.expect(first, count);
     }
 
     #[inline(always)]
@@ -138,10 +154,11 @@ impl Batch for NearestBatch<'_> {
         let mut changed = false;
         for (shape, position) in (first..first + count).enumerate() {
             let lanes = sweep(simd, self.shapes, [first, count, shape as u32], packet, active);
+            let ready = ready(self.shapes, position, &lanes, active);
             for group in bits(active).map(|group| group as usize) {
                 for lane in bits(u32::from(lanes[group])).map(|lane| lane as usize) {
                     let (ray, t_max) = (packet.group(group).rays[lane], packet.group(group).t_max[lane]);
-                    let answer = self.test(ray as usize, position, t_max);
+                    let answer = self.test_ready(ray as usize, position, t_max, ready.as_ref());
                     if answer < t_max {
                         packet.set_t_max(group, lane, answer);
                         changed = true;
@@ -183,6 +200,12 @@ fn sweep<S: Simd>(simd: S, shapes: &Shapes, shape: [u32; 3], packet: &Packet, ac
         Some(culls) => culls.sweep(simd, shape, packet, active),
         None => [u16::MAX; GROUPS],
     }
+}
+
+/// The shape made ready, where any ray of a packet may hit it and that spares work.
+#[inline(always)]
+fn ready(shapes: &Shapes, position: u32, lanes: &[u16; GROUPS], active: u32) -> Option<Ready> {
+    bits(active).any(|group| lanes[group as usize % GROUPS] != 0).then(|| shapes.ready(position)).flatten()
 }
 
 /// A see-through surface that a shadow ray crosses.
@@ -259,8 +282,14 @@ impl<'a> ShadowBatch<'a> {
     }
 
     /// Tests one shape; answers whether it blocks the ray.
-    #[inline(never)]
+    #[inline(always)]
     fn blocks(&mut self, i: usize, position: u32) -> bool {
+        self.blocks_ready(i, position, None)
+    }
+
+    /// The same for one that may have been made ready.
+    #[inline(never)]
+    fn blocks_ready(&mut self, i: usize, position: u32, ready: Option<&Ready>) -> bool {
         if leaves(self.left, i, position) {
             return false;
         }
@@ -268,7 +297,10 @@ impl<'a> ShadowBatch<'a> {
         buffers.tests[i].shapes += 1;
         let query = self.queries.query(i);
         let triangle_ray = &buffers.triangle_rays[if buffers.triangle_rays.len() == 1 { 0 } else { i }];
-        let crossings = self.shapes.crossings(position, &query.ray, triangle_ray);
+        let crossings = match ready {
+            Some(ready) => ready.crossings(&query.ray),
+            None => self.shapes.crossings(position, &query.ray, triangle_ray),
+        };
         for &hit in crossings.as_slice() {
             if !(query.t_min < hit.t && hit.t < query.t_max) {
                 continue;
@@ -304,9 +336,15 @@ impl Batch for ShadowBatch<'_> {
         [first, count]: [u32; 2],
         t_max: f64,
     ) -> f64 {
+        self.shapes.expect_tests(first, count);
         let left = block(simd, self.shapes, narrow, first, count);
         let blocked = bits(left).any(|lane| self.blocks(i, first + lane));
         if blocked { f64::NEG_INFINITY } else { t_max }
+    }
+
+    #[inline(always)]
+    fn expect(&self, first: u32, count: u32) {
+        self.shapes.expect(first, count);
     }
 
     #[inline(always)]
@@ -320,9 +358,11 @@ impl Batch for ShadowBatch<'_> {
         let mut changed = false;
         for (shape, position) in (first..first + count).enumerate() {
             let lanes = sweep(simd, self.shapes, [first, count, shape as u32], packet, active);
+            let ready = ready(self.shapes, position, &lanes, active);
             for group in bits(active).map(|group| group as usize) {
                 for lane in bits(u32::from(lanes[group])).map(|lane| lane as usize) {
-                    if self.blocks(packet.group(group).rays[lane] as usize, position) {
+                    let ray = packet.group(group).rays[lane] as usize;
+                    if self.blocks_ready(ray, position, ready.as_ref()) {
                         packet.set_t_max(group, lane, f64::NEG_INFINITY);
                         changed = true;
                     }

@@ -7,13 +7,16 @@ mod written;
 
 use crate::bake::Baked;
 use crate::bake::Lists;
-use crate::bake::RunIndex;
 use crate::cull::Culls;
 use crate::estimate::written;
 use crate::form::Form;
 use crate::leaving::Leaving;
+use crate::own::Ready;
+use crate::stretch::Stretch;
+use crate::stretch::Stretches;
 use dotray_accel::Accelerator;
 use dotray_accel::narrow::Frame;
+use dotray_geometry::Affine;
 use dotray_geometry::Crossings;
 use dotray_geometry::Hit;
 use dotray_geometry::Ray;
@@ -55,6 +58,8 @@ pub enum OwnColor {
 pub struct Shapes {
     lists: Lists,
     baked: Baked,
+    /// Whether walks wait for memory ([`Accelerator::is_far`]).
+    is_far: bool,
 }
 
 impl Shapes {
@@ -62,8 +67,21 @@ impl Shapes {
     /// there is one that shows blocks, what rules shapes out in single precision is laid down as well. `material` turns
     /// a run and the number written there into the scene's material number.
     pub fn bake(
-        runs: Vec<Run>,
-        frames: Vec<Transform>,
+        runs: &[Run],
+        matrices: Vec<Affine>,
+        files: Vec<SceneFile>,
+        numbers: &[u32],
+        accelerator: Option<&Accelerator>,
+        material: impl Fn(&Run, i32) -> u32 + Sync,
+    ) -> Self {
+        let stretches = Stretches::new(runs, matrices.len(), numbers.len() as u32);
+        Self::bake_stretches(stretches, matrices, files, numbers, accelerator, material)
+    }
+
+    /// The same, where the stretches of the runs are known.
+    pub(crate) fn bake_stretches(
+        stretches: Stretches,
+        matrices: Vec<Affine>,
         files: Vec<SceneFile>,
         numbers: &[u32],
         accelerator: Option<&Accelerator>,
@@ -71,16 +89,30 @@ impl Shapes {
     ) -> Self {
         let accelerator = accelerator.filter(|accelerator| accelerator.shows_blocks());
         let cull_frame = accelerator.map(|accelerator| Frame::around(accelerator.bounds()));
-        let index = RunIndex::new(&runs, numbers.len() as u32);
-        let mut lists = Lists { runs, frames, files, index, patterns: Vec::new(), cull_frame };
+        let mut lists = Lists { stretches, matrices, files, cull_frame, ..Lists::default() };
         let baked = Baked::lay(&lists, numbers, accelerator, material);
         lists.let_go();
-        Self { lists, baked }
+        Self { lists, baked, is_far: accelerator.is_some_and(Accelerator::is_far) }
     }
 
     /// What rules shapes out in single precision; `None` where the accelerator does not ask for it.
     pub(crate) fn culls(&self) -> Option<&Culls> {
         self.lists.cull_frame.as_ref().map(|_| &self.baked.culls)
+    }
+
+    /// Asks for what a leaf's block of shapes reads.
+    #[inline(always)]
+    pub(crate) fn expect(&self, first: u32, count: u32) {
+        self.baked.culls.expect(first as usize, count as usize);
+        self.baked.expect(first, count);
+    }
+
+    /// Asks for what the tests of a leaf's shapes in double precision read, where memory is far.
+    #[inline(always)]
+    pub(crate) fn expect_tests(&self, first: u32, count: u32) {
+        if self.is_far {
+            self.baked.expect(first, count);
+        }
     }
 
     /// How many positions there are.
@@ -144,27 +176,55 @@ impl Shapes {
 
     /// The unit vectors of object space along which the shape's texture coordinates grow fastest.
     pub fn texture_axes(&self, position: u32, surface: &Surface) -> Option<[Vec3; 2]> {
-        self.in_object(position, self.run(position)).texture_axes(surface)
+        self.in_object(position, &self.run(position)).texture_axes(surface)
     }
 
-    /// The run that the shape stands in.
+    /// The run that the shape stands in. The number of its transform is the scene's only where no other shape has it.
     #[inline]
-    pub fn run(&self, position: u32) -> &Run {
-        &self.lists.runs[self.baked.runs_of.get(position as usize).map_or(0, |&run| run as usize)]
+    pub(crate) fn run(&self, position: u32) -> Run {
+        self.stretch(position).run(self.number(position))
+    }
+
+    #[inline]
+    fn stretch(&self, position: u32) -> &Stretch {
+        let stretch = self.baked.stretches.get(position as usize).map_or(0, |&stretch| stretch as usize);
+        &self.lists.stretches.list()[stretch]
     }
 
     /// The transform of the shape's groups.
+    pub fn frame(&self, position: u32) -> Transform {
+        let (baked, spills) = (&self.baked, &self.baked.spills);
+        let (form, index) = baked.slot(position);
+        match form {
+            Form::OwnSphere => baked.own_spheres[index].transform(spills),
+            Form::OwnCuboid => baked.own_cuboids[index].transform(spills),
+            Form::OwnCylinder => baked.own_cylinders[index].transform(spills),
+            Form::OwnCone => baked.own_cones[index].transform(spills),
+            Form::Sphere
+            | Form::Cuboid
+            | Form::Cylinder
+            | Form::Cone
+            | Form::Triangle
+            | Form::FramedSphere
+            | Form::FramedCuboid
+            | Form::FramedCylinder
+            | Form::FramedCone
+            | Form::FramedOther => *self.shared_frame(position),
+        }
+    }
+
+    /// The transform of the shape's groups, where it is not kept with the shape.
     #[inline]
-    pub fn frame(&self, position: u32) -> &Transform {
-        &self.lists.frames[self.run(position).frame as usize]
+    fn shared_frame(&self, position: u32) -> &Transform {
+        &self.lists.frames[self.stretch(position).run.frame as usize]
     }
 
     /// A unit normal of the shape's object space in the world.
     #[inline]
     pub fn world_normal(&self, position: u32, normal_in_object: Vec3) -> Vec3 {
-        match self.run(position).frame {
+        match self.stretch(position).run.frame {
             0 => normal_in_object,
-            frame => self.lists.frames[frame as usize].world_normal(normal_in_object),
+            _ => self.frame(position).world_normal(normal_in_object),
         }
     }
 
@@ -191,6 +251,9 @@ impl Shapes {
             | Form::FramedCylinder
             | Form::FramedCone
             | Form::FramedOther) => self.framed_crossings(form, index, position, ray),
+            Form::OwnSphere | Form::OwnCuboid | Form::OwnCylinder | Form::OwnCone => {
+                self.own_crossings(position, ray)
+            }
         }
     }
 
@@ -201,40 +264,80 @@ impl Shapes {
             Form::Sphere | Form::Cuboid | Form::Cylinder => Leaving::solid(position),
             Form::Triangle => Leaving::triangle(position, &self.baked.triangles[index]),
             Form::FramedSphere | Form::FramedCuboid | Form::FramedCylinder => {
-                Leaving::framed_solid(position, self.frame(position))
+                Leaving::framed_solid(position, self.shared_frame(position))
             }
-            Form::Cone | Form::FramedCone | Form::FramedOther => Leaving::NOTHING,
+            Form::OwnSphere if self.baked.own_spheres[index].is_in_world() => Leaving::solid(position),
+            Form::OwnCuboid if self.baked.own_cuboids[index].is_in_world() => Leaving::solid(position),
+            Form::OwnCylinder if self.baked.own_cylinders[index].is_in_world() => Leaving::solid(position),
+            Form::OwnSphere | Form::OwnCuboid | Form::OwnCylinder => {
+                Leaving::framed_solid(position, &self.frame(position))
+            }
+            Form::Cone | Form::FramedCone | Form::OwnCone | Form::FramedOther => Leaving::NOTHING,
         }
     }
 
     #[inline(never)]
     fn framed_crossings(&self, form: Form, index: usize, position: u32, ray: &Ray) -> Crossings {
-        let ray_in_object = ray.transformed(&self.frame(position).object_from_world);
+        let ray_in_object = ray.transformed(&self.shared_frame(position).object_from_world);
         match form {
             Form::FramedSphere => self.baked.framed_spheres[index].crossings(&ray_in_object),
             Form::FramedCuboid => self.baked.framed_cuboids[index].crossings(&ray_in_object),
             Form::FramedCylinder => self.baked.framed_cylinders[index].crossings(&ray_in_object),
             Form::FramedCone => self.baked.framed_cones[index].crossings(&ray_in_object),
             Form::FramedOther => self.baked.framed_others[index].crossings(&ray_in_object),
-            Form::Sphere | Form::Cuboid | Form::Cylinder | Form::Cone | Form::Triangle => Crossings::NONE,
+            Form::Sphere
+            | Form::Cuboid
+            | Form::Cylinder
+            | Form::Cone
+            | Form::Triangle
+            | Form::OwnSphere
+            | Form::OwnCuboid
+            | Form::OwnCylinder
+            | Form::OwnCone => Crossings::NONE,
         }
+    }
+
+    /// A shape that is kept with its matrix, ready for rays.
+    #[inline]
+    pub(crate) fn ready(&self, position: u32) -> Option<Ready> {
+        let (form, index) = self.baked.slot(position);
+        let (baked, spills) = (&self.baked, &self.baked.spills);
+        match form {
+            Form::OwnSphere => Some(baked.own_spheres[index].ready(spills)),
+            Form::OwnCuboid => Some(baked.own_cuboids[index].ready(spills)),
+            Form::OwnCylinder => Some(baked.own_cylinders[index].ready_cylinder(spills)),
+            Form::OwnCone => Some(baked.own_cones[index].ready_cone(spills)),
+            Form::Sphere
+            | Form::Cuboid
+            | Form::Cylinder
+            | Form::Cone
+            | Form::Triangle
+            | Form::FramedSphere
+            | Form::FramedCuboid
+            | Form::FramedCylinder
+            | Form::FramedCone
+            | Form::FramedOther => None,
+        }
+    }
+
+    #[inline(never)]
+    fn own_crossings(&self, position: u32, ray: &Ray) -> Crossings {
+        self.ready(position).map_or(Crossings::NONE, |ready| ready.crossings(ray))
     }
 
     /// The surface where `ray` met the shape at `position`.
     pub fn surface(&self, position: u32, ray: &Ray, hit: Hit) -> WorldSurface {
         let run = self.run(position);
-        let shape = self.in_object(position, run);
-        let frame = &self.lists.frames[run.frame as usize];
-        if let Shape::Triangle(triangle) = &shape
-            && run.frame != 0
-        {
-            return self.triangle_surface(position, triangle, frame, ray);
-        }
+        let shape = self.in_object(position, &run);
         if run.frame == 0 {
             let in_object = shape.surface(ray, hit);
             let (point, geometric_normal) = (in_object.point, in_object.geometric_normal);
             return WorldSurface { point, geometric_normal, in_object };
         }
+        if let Shape::Triangle(triangle) = &shape {
+            return self.triangle_surface(position, triangle, self.shared_frame(position), ray);
+        }
+        let frame = self.frame(position);
         let in_object = shape.surface(&ray.transformed(&frame.object_from_world), hit);
         WorldSurface {
             point: frame.world_from_object.transform_point3(in_object.point),
@@ -255,6 +358,12 @@ impl Shapes {
             {
                 Shape::Triangle(pattern.with_vertices(self.baked.triangles[index]))
             }
+            Form::OwnSphere => Shape::Sphere(self.baked.own_spheres[index].sphere(&self.baked.spills)),
+            Form::OwnCuboid => Shape::Cuboid(self.baked.own_cuboids[index].cuboid(&self.baked.spills)),
+            Form::OwnCylinder => {
+                Shape::Cylinder(self.baked.own_cylinders[index].cylinder(&self.baked.spills))
+            }
+            Form::OwnCone => Shape::Cone(self.baked.own_cones[index].cone(&self.baked.spills)),
             Form::Sphere
             | Form::Cuboid
             | Form::Cylinder
@@ -295,7 +404,11 @@ impl Shapes {
         fn bytes<T>(list: &[T]) -> u64 {
             size_of_val(list) as u64
         }
-        let baked = self.baked.memory() + bytes(&self.lists.runs) + bytes(&self.lists.frames);
+        let lists = &self.lists;
+        let baked = self.baked.memory()
+            + bytes(lists.stretches.list())
+            + bytes(&lists.frames)
+            + bytes(&lists.frame_numbers);
         let written = written(&self.lists.files);
         (baked, written)
     }

@@ -35,6 +35,11 @@ use dotray_geometry::Vec4;
 /// one stream a level, stays small.
 const STREAM: usize = 1024;
 
+/// Tests between two looks at an observer who is impatient, and with how many rays a stream begins whose cost is not
+/// known: without a tree over many shapes, a ray has a test with each.
+const TESTS: u64 = 200_000;
+const FIRST: usize = 16;
+
 /// Traces rays through a world.
 pub struct Tracer<'a> {
     world: &'a World,
@@ -54,6 +59,9 @@ pub struct Tracer<'a> {
     /// Who may stop it.
     observer: &'a dyn Observer,
     stopped: bool,
+    /// All tests when the observer was looked at last, and the most between two looks since the stream began.
+    tests_before: u64,
+    most_tests: u64,
 }
 
 /// Rays with the same number of bounces behind them, side by side.
@@ -116,6 +124,8 @@ impl<'a> Tracer<'a> {
             recorder: None,
             observer: &Silent,
             stopped: false,
+            tests_before: 0,
+            most_tests: 0,
         }
     }
 
@@ -136,6 +146,9 @@ impl<'a> Tracer<'a> {
 
     /// Asks whether to stop.
     fn stops(&mut self) -> bool {
+        let tests = self.stats.box_tests + self.stats.shape_tests;
+        self.most_tests = self.most_tests.max(tests - self.tests_before);
+        self.tests_before = tests;
         self.stopped = self.stopped || self.observer.cancelled();
         self.stopped
     }
@@ -163,28 +176,38 @@ impl<'a> Tracer<'a> {
     /// Traces the eye rays stream by stream and shows each.
     fn eye_streams(&mut self, eye_rays: &[Ray], mut show: impl FnMut(&Stream<'a>)) {
         self.stats.eye_rays += eye_rays.len() as u64;
-        for (number, rays) in eye_rays.chunks(STREAM).enumerate() {
+        let impatient = self.observer.is_impatient();
+        let (mut first, mut at_once) = (0, if impatient { FIRST } else { STREAM });
+        while first < eye_rays.len() {
             if self.stops() {
                 return;
             }
+            let rays = &eye_rays[first..eye_rays.len().min(first + at_once)];
             let mut stream = self.take_stream();
             stream.rays.extend_from_slice(rays);
             stream.contributions.resize(rays.len(), Vec3::ONE);
-            self.listen(|recorder| recorder.open_eyes(number * STREAM, rays.len()));
+            self.listen(|recorder| recorder.open_eyes(first, rays.len()));
+            self.most_tests = 0;
             self.trace(&mut stream, 0);
             self.listen(Recorder::close);
             show(&stream);
             self.streams.push(stream);
+            first += rays.len();
+            if impatient {
+                self.stops();
+                at_once = fitting(rays.len(), self.most_tests);
+            }
         }
     }
 
-    /// All that the renderer computes for one eye ray, its colour included.
+    /// All that the renderer computes for one eye ray, its colour included; `None` where it was stopped.
     pub fn inspect(&mut self, eye_ray: Ray) -> Option<RayNode> {
         let mut inspector = Inspector::default();
         inspector.begin(RayKind::Eye, eye_ray, 0, Vec3::ONE, Vec3::ONE);
         self.inspector = Some(inspector);
-        let color = self.colors(&[eye_ray])[0];
+        let colors = self.colors(&[eye_ray]);
         let mut inspector = self.inspector.take()?;
+        let color = colors.first().copied().filter(|_| !self.stopped)?;
         inspector.finish(color);
         inspector.root
     }
@@ -371,6 +394,12 @@ const ALIKE: f64 = 1e-3;
 fn run_alike(rays: &[Ray]) -> bool {
     let alike = |pair: &&[Ray]| (pair[0].direction - pair[1].direction).length_squared() < ALIKE;
     4 * rays.windows(2).filter(alike).count() >= 3 * rays.len()
+}
+
+/// How many rays may travel together where so many have had so many tests between two looks at the observer.
+fn fitting(rays: usize, tests: u64) -> usize {
+    let fitting = rays as u64 * TESTS / tests.max(1);
+    usize::try_from(fitting).unwrap_or(STREAM).clamp(FIRST, STREAM)
 }
 
 fn count(stats: &mut Stats, tests: &[Tests]) {

@@ -3,14 +3,15 @@
 use crate::resolved::Resolved;
 use crate::resolved::Run;
 use dotray_geometry::Aabb;
+use dotray_geometry::Affine;
 use dotray_geometry::Shape;
-use dotray_geometry::Transform;
 use dotray_geometry::Vec3;
+use dotray_geometry::similarity_scale;
 
 /// A box around every shape of the scene, in world coordinates.
 pub fn world_bounds(scene: &Resolved) -> Aabb {
     let mut bounds = Aabb::EMPTY;
-    each_shape(scene, |shape, frame| bounds = bounds.union(shape.world_bounds(&frame.world_from_object)));
+    each_shape(scene, |shape, frame| bounds = bounds.union(shape.world_bounds(frame)));
     bounds
 }
 
@@ -22,7 +23,7 @@ pub fn radius_about(scene: &Resolved, center: Vec3) -> f64 {
     radius
 }
 
-fn each_shape(scene: &Resolved, mut visit: impl FnMut(&Shape, &Transform)) {
+fn each_shape(scene: &Resolved, mut visit: impl FnMut(&Shape, &Affine)) {
     for Run { file, kind, first, count, frame, .. } in &scene.runs {
         let file = scene.files.get(file.0 as usize);
         let frame = scene.frames.get(*frame as usize);
@@ -33,11 +34,10 @@ fn each_shape(scene: &Resolved, mut visit: impl FnMut(&Shape, &Transform)) {
 }
 
 /// How far from `center` a point of the shape can lie at most.
-fn reach(shape: &Shape, frame: &Transform, center: Vec3) -> f64 {
-    let world_from_object = &frame.world_from_object;
+fn reach(shape: &Shape, world_from_object: &Affine, center: Vec3) -> f64 {
     let distance = |point: Vec3| world_from_object.transform_point3(point).distance(center);
     match shape {
-        Shape::Sphere(sphere) => match frame.similarity_scale() {
+        Shape::Sphere(sphere) => match similarity_scale(world_from_object) {
             Some(scale) => distance(sphere.center()) + scale * sphere.radius(),
             None => farthest_corner(shape.bounds(), distance),
         },

@@ -39,19 +39,6 @@ impl SceneFile {
             }
         }
     }
-
-    fn shape_materials_mut(&mut self, kind: ShapeKind) -> &mut [i32] {
-        match kind {
-            ShapeKind::Sphere => &mut self.spheres.materials,
-            ShapeKind::Cuboid => &mut self.cuboids.materials,
-            ShapeKind::Cylinder => &mut self.cylinders.materials,
-            ShapeKind::Cone => &mut self.cones.materials,
-            ShapeKind::Triangle => &mut self.triangles.materials,
-            ShapeKind::IndexedTriangle => &mut self.indexed_triangles.materials,
-            ShapeKind::Torus => &mut self.tori.materials,
-            ShapeKind::Open => &mut self.open_sides.materials,
-        }
-    }
 }
 
 /// A material of the file (or the default one) with its ambient and diffuse colour multiplied: by the very products

@@ -11,6 +11,14 @@ use dotray_geometry::Transform;
 /// # Errors
 /// [`SingularMatrix`] where the product has no usable inverse or is not finite.
 pub fn nested(parent: &Transform, parent_from_group: &Mat4) -> Result<Transform, SingularMatrix> {
+    nested_in(&parent.world_from_object, parent_from_group)
+}
+
+/// The same inside the group of this matrix.
+///
+/// # Errors
+/// See [`nested`].
+pub fn nested_in(world_from_parent: &Affine, parent_from_group: &Mat4) -> Result<Transform, SingularMatrix> {
     // The inverse is that of the product, not the product of the inverses: see the test of deep chains.
-    Transform::new(parent.world_from_object * Affine::from_mat4(*parent_from_group))
+    Transform::new(*world_from_parent * Affine::from_mat4(*parent_from_group))
 }

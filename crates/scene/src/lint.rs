@@ -17,8 +17,8 @@ use crate::resolved::Run;
 use crate::span::FileId;
 use crate::span::Span;
 use dotray_geometry::Aabb;
+use dotray_geometry::Affine;
 use dotray_geometry::Shape;
-use dotray_geometry::Transform;
 use dotray_geometry::Vec3;
 
 /// Every code that [`lint`] can give, with what it means.
@@ -49,7 +49,7 @@ struct Standing<'a> {
     /// The entry of its kind's list.
     entry: usize,
     shape: Shape,
-    frame: &'a Transform,
+    world_from_object: &'a Affine,
 }
 
 impl Standing<'_> {
@@ -63,7 +63,7 @@ impl Standing<'_> {
     }
 
     fn bounds(&self) -> Aabb {
-        self.shape.world_bounds(&self.frame.world_from_object)
+        self.shape.world_bounds(self.world_from_object)
     }
 }
 
@@ -75,7 +75,7 @@ fn standing(scene: &Resolved) -> impl Iterator<Item = Standing<'_>> {
         let entries = run.first as usize..run.first as usize + run.count as usize;
         entries.filter_map(move |entry| {
             let shape = file?.shape(run.kind, entry)?;
-            Some(Standing { run, entry, shape, frame: frame? })
+            Some(Standing { run, entry, shape, world_from_object: frame? })
         })
     })
 }

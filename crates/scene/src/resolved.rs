@@ -9,6 +9,7 @@ use crate::model::Tint;
 use crate::procedural::Procedural;
 use crate::span::FileId;
 use crate::span::Span;
+use dotray_geometry::Affine;
 use dotray_geometry::Transform;
 use std::path::PathBuf;
 
@@ -63,7 +64,7 @@ pub struct Run {
     pub first: u32,
     /// How many.
     pub count: u32,
-    /// The number of their transform in [`Resolved::frames`].
+    /// The number of their matrix in [`Resolved::frames`].
     pub frame: u32,
     /// What to add to a shape's own material number.
     pub material_base: u32,
@@ -119,8 +120,9 @@ pub struct Resolved {
     pub materials: Vec<ResolvedMaterial>,
     /// All files' textures.
     pub textures: Vec<ResolvedTexture>,
-    /// The transforms in use; number 0 is the identity.
-    pub frames: Vec<Transform>,
+    /// The matrices in use, world from object; number 0 is the identity. All have an inverse: see
+    /// [`Resolved::transform`].
+    pub frames: Vec<Affine>,
     /// The shapes.
     pub runs: Vec<Run>,
     /// The tree over the runs.
@@ -141,6 +143,14 @@ impl Run {
 }
 
 impl Resolved {
+    /// The matrix of this number in [`Resolved::frames`], with its inverse.
+    pub fn transform(&self, frame: u32) -> Option<Transform> {
+        match frame {
+            0 => Some(Transform::IDENTITY),
+            _ => self.frames.get(frame as usize).copied().map(Transform::again),
+        }
+    }
+
     /// The number in [`Resolved::materials`] of the default material.
     pub fn default_material(&self) -> u32 {
         self.materials.len().saturating_sub(1) as u32

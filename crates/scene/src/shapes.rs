@@ -66,6 +66,20 @@ impl SceneFile {
         }
     }
 
+    /// The same, to be changed.
+    pub fn shape_materials_mut(&mut self, kind: ShapeKind) -> &mut Vec<i32> {
+        match kind {
+            ShapeKind::Sphere => &mut self.spheres.materials,
+            ShapeKind::Cuboid => &mut self.cuboids.materials,
+            ShapeKind::Cylinder => &mut self.cylinders.materials,
+            ShapeKind::Cone => &mut self.cones.materials,
+            ShapeKind::Triangle => &mut self.triangles.materials,
+            ShapeKind::IndexedTriangle => &mut self.indexed_triangles.materials,
+            ShapeKind::Torus => &mut self.tori.materials,
+            ShapeKind::Open => &mut self.open_sides.materials,
+        }
+    }
+
     /// The directive word of a shape; `file` is this file's number.
     pub fn shape_span(&self, file: FileId, kind: ShapeKind, index: usize) -> Option<Span> {
         let starts = match kind {

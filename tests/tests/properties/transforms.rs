@@ -21,7 +21,7 @@ fn baked(text: String) -> Shapes {
     let scene = pictures::scene_of_text("random.ray", text).unwrap_or_else(|error| panic!("{error}"));
     let resolved = pictures::resolved(scene).unwrap_or_else(|error| panic!("{error}"));
     let numbers: Vec<u32> = (0..resolved.shape_count).collect();
-    Shapes::bake(resolved.runs, resolved.frames, resolved.files, &numbers, None, |_, _| 0)
+    Shapes::bake(&resolved.runs, resolved.frames, resolved.files, &numbers, None, |_, _| 0)
 }
 
 /// Brute force over the shapes as the renderer tests them.

@@ -116,7 +116,7 @@ fn others(of: &Explanation<'_>, drawing: &mut Drawing) {
         for (number, shape) in (*first_shape..).zip(file.shapes(*kind, *first, *count)) {
             if !of.shapes.contains_key(&number) {
                 let name = format!("{} {number}", kind.directive().trim_start_matches('#'));
-                drawing.outline(&shape.world_bounds(&frame.world_from_object), OTHER, &name);
+                drawing.outline(&shape.world_bounds(frame), OTHER, &name);
             }
         }
     }

@@ -8,6 +8,7 @@ use super::round::TOP;
 use super::round::along_and_across;
 use super::round::bottom_texcoord;
 use super::round::disc_bounds;
+use super::round::disc_extents;
 use super::round::top_texcoord;
 use super::round::within_disc;
 use crate::aabb::Aabb;
@@ -143,15 +144,18 @@ impl Cone {
     /// See [`super::Shape::world_bounds`]: the cone is the hull of its disc and its apex, or of its two discs.
     pub fn world_bounds(&self, world_from_object: &Affine) -> Aabb {
         let half = Vec3::Y * (self.height * 0.5);
+        let disc = |center, radius| {
+            disc_bounds(world_from_object, center, radius, disc_extents(world_from_object, radius))
+        };
+        let lower = disc(self.center - half, self.radius);
         if self.top > 0.0 {
-            let lower = disc_bounds(world_from_object, self.center - half, self.radius);
-            return lower.union(disc_bounds(world_from_object, self.center + half, self.top));
+            return lower.union(disc(self.center + half, self.top));
         }
         let apex = self.center + half;
         let apex_in_world = world_from_object.transform_point3(apex);
         Aabb::new(apex_in_world, apex_in_world)
             .padded(image_magnitude(world_from_object, self.center.abs() + half))
-            .union(disc_bounds(world_from_object, self.center - half, self.radius))
+            .union(lower)
     }
 }
 

@@ -7,6 +7,7 @@ use super::round::TOP;
 use super::round::along_and_across;
 use super::round::bottom_texcoord;
 use super::round::disc_bounds;
+use super::round::disc_extents;
 use super::round::top_texcoord;
 use super::round::within_disc;
 use crate::aabb::Aabb;
@@ -107,7 +108,8 @@ impl Cylinder {
     /// See [`super::Shape::world_bounds`]: the cylinder is the hull of its two discs.
     pub fn world_bounds(&self, world_from_object: &Affine) -> Aabb {
         let half = Vec3::Y * (self.height * 0.5);
-        let disc = |center| disc_bounds(world_from_object, center, self.radius);
+        let extents = disc_extents(world_from_object, self.radius);
+        let disc = |center| disc_bounds(world_from_object, center, self.radius, extents);
         disc(self.center - half).union(disc(self.center + half))
     }
 }

@@ -73,11 +73,18 @@ pub(super) fn within_disc(radial: Vec2, radius: f64) -> Vec2 {
     if distance > radius { radial * (radius / distance) } else { radial }
 }
 
-/// The tight, padded box of a disc that is horizontal in object coordinates: an ellipse in the world.
-pub(super) fn disc_bounds(world_from_object: &Affine, center: Vec3, radius: f64) -> Aabb {
+/// How far a disc about 0 that is horizontal in object coordinates reaches along the world's axes.
+#[inline]
+pub(super) fn disc_extents(world_from_object: &Affine, radius: f64) -> Vec3 {
     let m = &world_from_object.matrix3;
     let extent = |row: Vec3| Vec2::new(row.x, row.z).length() * radius;
-    let extents = Vec3::new(extent(m.row(0)), extent(m.row(1)), extent(m.row(2)));
+    Vec3::new(extent(m.row(0)), extent(m.row(1)), extent(m.row(2)))
+}
+
+/// The tight, padded box of a disc that is horizontal in object coordinates: an ellipse in the world, which reaches as
+/// far as these extents say.
+#[inline]
+pub(super) fn disc_bounds(world_from_object: &Affine, center: Vec3, radius: f64, extents: Vec3) -> Aabb {
     let center_in_world = world_from_object.transform_point3(center);
     let reach = center.abs() + Vec3::splat(radius);
     Aabb::new(center_in_world - extents, center_in_world + extents)

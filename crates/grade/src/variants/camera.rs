@@ -34,12 +34,14 @@ pub fn stretched(resolved: &mut Resolved, (width, height): (u32, u32)) {
     let along = Mat3::from_cols(right * right.x, right * right.y, right * right.z);
     let matrix3 = Mat3::IDENTITY + along * factor;
     let stretch = Affine { matrix3, translation: camera.position - matrix3 * camera.position };
-    let Ok(of_world) = Transform::new(stretch) else { return };
+    if Transform::new(stretch).is_err() {
+        return;
+    }
     for frame in resolved.frames.iter_mut().skip(1) {
-        *frame = Transform::new(stretch * frame.world_from_object).unwrap_or(*frame);
+        *frame = Transform::new(stretch * *frame).map_or(*frame, |stretched| stretched.world_from_object);
     }
     // The first frame is the world and must stay it.
     let new = resolved.frames.len() as u32;
-    resolved.frames.push(of_world);
+    resolved.frames.push(stretch);
     resolved.runs.iter_mut().filter(|run| run.frame == 0).for_each(|run| run.frame = new);
 }

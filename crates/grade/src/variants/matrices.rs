@@ -86,7 +86,7 @@ pub fn normals_by_matrix(resolved: &mut Resolved, _: (u32, u32)) {
         let frame = resolved.frames.get(run.frame as usize);
         let file = resolved.files.get_mut(run.file.0 as usize);
         if let (ShapeKind::Sphere, Some(frame), Some(file)) = (run.kind, frame, file) {
-            let matrix = frame.world_from_object.matrix3;
+            let matrix = frame.matrix3;
             mesh_of_spheres(run, file, |normal| matrix.transpose() * (matrix * normal));
         }
         run.first_shape = first_shape;

@@ -52,7 +52,7 @@ fn message(scene: &Resolved, number: u32, earlier: u32) -> Diagnostic {
 
 fn equal(scene: &Resolved, a: u32, b: u32) -> bool {
     match (nth(scene, a), nth(scene, b)) {
-        (Some(a), Some(b)) => a.shape == b.shape && a.frame == b.frame,
+        (Some(a), Some(b)) => a.shape == b.shape && a.world_from_object == b.world_from_object,
         (None, _) | (_, None) => false,
     }
 }
@@ -63,7 +63,7 @@ fn nth(scene: &Resolved, number: u32) -> Option<Standing<'_>> {
     let run = scene.runs.get(after.checked_sub(1)?)?;
     let entry = run.first as usize + (number - run.first_shape) as usize;
     let shape = scene.files.get(run.file.0 as usize)?.shape(run.kind, entry)?;
-    Some(Standing { run, entry, shape, frame: scene.frames.get(run.frame as usize)? })
+    Some(Standing { run, entry, shape, world_from_object: scene.frames.get(run.frame as usize)? })
 }
 
 /// Equal for equal shapes: their world boxes, bit for bit.

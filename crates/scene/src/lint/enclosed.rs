@@ -7,6 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Sink;
 use crate::resolved::Resolved;
 use dotray_geometry::Shape;
+use dotray_geometry::Transform;
 use dotray_geometry::Vec3;
 
 /// Each shape is compared with each, so larger scenes are not searched.
@@ -53,7 +54,8 @@ fn is_opaque(scene: &Resolved, standing: &Standing<'_>) -> bool {
 /// Whether a point of the world lies inside, clear of the surface; false for shapes that have no inside.
 fn holds(outer: &Standing<'_>, point_in_world: Vec3) -> bool {
     const CLEAR: f64 = 1.0 - 1e-9;
-    let point = outer.frame.object_from_world.transform_point3(point_in_world);
+    let frame = Transform::again(*outer.world_from_object);
+    let point = frame.object_from_world.transform_point3(point_in_world);
     if let Shape::Sphere(sphere) = &outer.shape {
         point.distance(sphere.center()) < CLEAR * sphere.radius()
     } else if let Shape::Cuboid(cuboid) = &outer.shape {

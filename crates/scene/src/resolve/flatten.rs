@@ -15,12 +15,12 @@ use crate::span::Span;
 use crate::walk::Step;
 use crate::walk::Walk;
 use crate::walk::WalkError;
-use dotray_geometry::Transform;
+use dotray_geometry::Affine;
 
 /// The parts of the resolved scene that come from the tree.
 #[derive(Debug)]
 pub struct Flat {
-    pub frames: Vec<Transform>,
+    pub frames: Vec<Affine>,
     pub runs: Vec<Run>,
     pub tree: Vec<TreeEvent>,
     pub shape_count: u32,
@@ -29,8 +29,8 @@ pub struct Flat {
 /// Walks the tree once.
 pub fn flatten(files: &[SceneFile], bases: &[u32], limits: &Limits, sink: &mut Sink) -> Flat {
     let written = files.iter().map(|file| file.items.iter().filter(|item| is_run(item)).count() as u64).sum();
-    let root = Group { transform: Some(Transform::IDENTITY), frame: Some(0) };
-    let flat = Flat { frames: vec![Transform::IDENTITY], runs: Vec::new(), tree: Vec::new(), shape_count: 0 };
+    let root = Group { world_from_group: Some(Affine::IDENTITY), frame: Some(0) };
+    let flat = Flat { frames: vec![Affine::IDENTITY], runs: Vec::new(), tree: Vec::new(), shape_count: 0 };
     let limits = Limits { runs: limits.runs.max(written), ..*limits };
     let mut flattener = Flattener { files, bases, limits, flat, groups: vec![root], opened: Vec::new() };
     for step in Walk::new(files, limits.steps) {
@@ -50,10 +50,10 @@ fn is_run(item: &Item) -> bool {
     matches!(item, Item::Run { .. })
 }
 
-/// An open group. Its transform is `None` inside a fault already told.
+/// An open group. Its matrix is `None` inside a fault already told.
 struct Group {
-    transform: Option<Transform>,
-    /// The number of its transform in [`Flat::frames`], once a shape of its own needs one.
+    world_from_group: Option<Affine>,
+    /// The number of its matrix in [`Flat::frames`], once a shape of its own needs one.
     frame: Option<u32>,
 }
 
@@ -97,10 +97,10 @@ impl Flattener<'_> {
 
     fn open_group(&mut self, file: FileId, group: u32, sink: &mut Sink) {
         let placed = self.files.get(file.0 as usize).and_then(|file| file.groups.get(group as usize));
-        let around = self.groups.last().and_then(|group| group.transform);
-        let transform = match (around, placed) {
-            (Some(around), Some(placed)) => match frame::nested(&around, &placed.value) {
-                Ok(transform) => Some(transform),
+        let around = self.groups.last().and_then(|group| group.world_from_group);
+        let world_from_group = match (around, placed) {
+            (Some(around), Some(placed)) => match frame::nested_in(&around, &placed.value) {
+                Ok(transform) => Some(transform.world_from_object),
                 Err(_) => {
                     sink.error(self.singular(placed.span));
                     None
@@ -108,8 +108,8 @@ impl Flattener<'_> {
             },
             (None, _) | (_, None) => None,
         };
-        let identity = transform.is_some_and(|transform| transform == Transform::IDENTITY);
-        self.groups.push(Group { transform, frame: identity.then_some(0) });
+        let identity = world_from_group == Some(Affine::IDENTITY);
+        self.groups.push(Group { world_from_group, frame: identity.then_some(0) });
         self.opened.push((placed.map(|placed| placed.span).unwrap_or_default(), "inside this group"));
     }
 
@@ -121,7 +121,7 @@ impl Flattener<'_> {
         count: u32,
     ) -> Result<(), (String, &'static str)> {
         let Some(group) = self.groups.last_mut() else { return Ok(()) };
-        let Some(transform) = group.transform else { return Ok(()) };
+        let Some(world_from_group) = group.world_from_group else { return Ok(()) };
         if self.flat.runs.len() as u64 >= self.limits.runs {
             return Err((format!("more than {} runs of shapes", self.limits.runs), "--max-groups"));
         }
@@ -133,7 +133,7 @@ impl Flattener<'_> {
         };
         let frames = &mut self.flat.frames;
         let frame = *group.frame.get_or_insert_with(|| {
-            frames.push(transform);
+            frames.push(world_from_group);
             (frames.len() - 1) as u32
         });
         let material_base = self.bases.get(file.0 as usize).copied().unwrap_or(0);

@@ -3,7 +3,6 @@
 use crate::build::Build;
 use crate::build::scene;
 use dotray_geometry::Affine;
-use dotray_geometry::Transform;
 use dotray_geometry::Vec3;
 use dotray_scene::Resolved;
 use dotray_scene::Severity;
@@ -73,7 +72,7 @@ fn a_complete_scene_has_no_warning() {
 fn matrices_multiply_outermost_first() {
     let build = main_file().translate(1.0, 2.0, 3.0).scale(2.0, 2.0, 2.0).sphere(-1, O, 1.0).close().close();
     let (resolved, _) = good(scene([build]));
-    let frame = resolved.frames[resolved.runs[0].frame as usize];
+    let frame = resolved.transform(resolved.runs[0].frame).unwrap();
     // The point is scaled first and moved afterwards.
     assert_eq!(frame.world_from_object.transform_point3(Vec3::X), Vec3::new(3.0, 2.0, 3.0));
     assert_eq!(frame.object_from_world.transform_point3(Vec3::new(3.0, 2.0, 3.0)), Vec3::X);
@@ -120,9 +119,9 @@ fn groups_share_one_frame_each() {
     ];
     assert_eq!(resolved.runs, expected);
     assert_eq!(resolved.shape_count, 8);
-    let translations: Vec<_> = resolved.frames.iter().map(|f| f.world_from_object.translation).collect();
+    let translations: Vec<_> = resolved.frames.iter().map(|frame| frame.translation).collect();
     assert_eq!(translations, [Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0), Vec3::X]);
-    assert_eq!(resolved.frames[0], Transform::IDENTITY);
+    assert_eq!(resolved.frames[0], Affine::IDENTITY);
     use TreeEvent::{Close, Open, Run as Shapes};
     let tree = [
         Shapes(0),
@@ -380,7 +379,7 @@ fn a_deep_chain_stays_accurate() {
         build = build.open(rows);
     }
     let (resolved, _) = good(scene([build.sphere(-1, O, 1.0)]));
-    let frame = resolved.frames[resolved.runs[0].frame as usize];
+    let frame = resolved.transform(resolved.runs[0].frame).unwrap();
     for affine in [frame.world_from_object, frame.object_from_world] {
         for point in [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE] {
             let error = affine.transform_point3(point).distance(point);
@@ -402,7 +401,7 @@ fn depth_is_bounded_only_by_memory() {
         build = build.translate(1.0, 0.0, 0.0);
     }
     let (resolved, _) = good(scene([build.sphere(-1, O, 1.0)]));
-    let frame = resolved.frames[resolved.runs[0].frame as usize];
+    let frame = resolved.transform(resolved.runs[0].frame).unwrap();
     assert_eq!(frame.world_from_object.translation, Vec3::new(100_000.0, 0.0, 0.0));
     assert_eq!(resolved.tree.len(), 200_001);
     assert_eq!(resolved.frames.len(), 2);
