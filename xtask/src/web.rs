@@ -12,11 +12,11 @@ use wasm_bindgen_cli_support::Bindgen;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// What stands beside the program on the page as it is.
-const AS_IT_IS: [&str; 4] = ["index.html", "page.css", "page.js", "tracer.js"];
+const AS_IT_IS: [&str; 5] = ["index.html", "page.css", "page.js", "crew.js", "tracer.js"];
 
 /// Where the Python package has the viewer for notebooks, and what of the page it needs.
 const NOTEBOOK: &str = "crates/python/python/dotray/web";
-const IN_A_NOTEBOOK: [&str; 2] = ["rayview.js", "rayview_bg.wasm.gz"];
+const IN_A_NOTEBOOK: [&str; 4] = ["rayview.js", "rayview_bg.wasm.gz", "crew.js", "tracer.js"];
 
 /// What `cargo xtask web` takes.
 #[derive(Debug, Args)]

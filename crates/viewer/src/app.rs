@@ -179,6 +179,7 @@ impl eframe::App for App {
         self.keys(&ctx);
         self.panels.show(ui, &mut self.state);
         self.viewport.show(ui, &mut self.state, &mut self.panels);
+        self.state.link.go_on();
         #[cfg(target_arch = "wasm32")]
         self.report.tell(&self.state, self.viewport.rect());
     }

@@ -25,7 +25,18 @@ use dotray_scene::resolve::resolve;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 use web_time::Instant;
+
+/// How many times as long as it has taken to show a picture the next one waits, unless it is finished, and how long at
+/// most.
+const QUIET: u32 = 6;
+const MOST_QUIET: Duration = Duration::from_secs(2);
+
+/// Whether this is a finished picture.
+fn is_complete(tell: &Tell) -> bool {
+    matches!(tell, Tell::Picture(sent) if sent.film.is_some())
+}
 
 /// See the module.
 #[derive(Debug, Default)]
@@ -33,16 +44,20 @@ pub struct Clerk {
     engine: Engine,
     /// Lights, materials and colours of the scene as they were read.
     style: Option<Box<Resolved>>,
-    /// Whether a picture was sent that the screen has not shown yet.
-    awaited: bool,
+    /// Since when a picture is on its way that the screen has not shown yet.
+    awaited: Option<Instant>,
+    /// Until when no other goes there: a screen that draws hears of nothing else.
+    quiet_until: Option<Instant>,
     /// The newest picture that could not be sent.
     held: Option<Tell>,
+    /// Whether it was told to wait.
+    waits: bool,
 }
 
 impl Clerk {
-    /// Whether there is more to trace.
+    /// Whether there is more to trace, now.
     pub fn is_busy(&self) -> bool {
-        self.engine.is_busy()
+        self.engine.is_busy() && !self.waits
     }
 
     /// Ends the portion under way.
@@ -63,7 +78,7 @@ impl Clerk {
                 None => return Vec::new(),
             },
             Ask::Draw(request) => {
-                self.held = None;
+                (self.held, self.quiet_until) = (None, None);
                 Command::Draw(request)
             }
             Ask::Stop => {
@@ -78,9 +93,15 @@ impl Clerk {
             Ask::Look(request, x, y) => Command::Look(request, x, y),
             Ask::Inspect(request, x, y) => Command::Inspect(request, x, y),
             Ask::Shown => {
-                let held = self.held.take();
-                self.awaited = held.is_some();
+                let took = self.awaited.take().map(|since| since.elapsed()).unwrap_or_default();
+                self.quiet_until = Some(Instant::now() + (took * QUIET).min(MOST_QUIET));
+                let held = self.held.take_if(|held| is_complete(held));
+                self.awaited = held.as_ref().map(|_| Instant::now());
                 return held.into_iter().collect();
+            }
+            Ask::Hold | Ask::GoOn => {
+                self.waits = matches!(ask, Ask::Hold);
+                return Vec::new();
             }
             // Whoever can store files has done so.
             Ask::Store(..) => return Vec::new(),
@@ -142,10 +163,12 @@ impl Clerk {
             Reply::Refused(sentence) => return Some(Tell::Refused(sentence)),
             Reply::Part(part) => return Some(Tell::Part(Box::new(SentPart::of(&part)))),
         };
-        if std::mem::replace(&mut self.awaited, true) {
+        let is_quiet = self.quiet_until.is_some_and(|until| Instant::now() < until) && !is_complete(&tell);
+        if self.awaited.is_some() || is_quiet {
             self.held = Some(tell);
             return None;
         }
+        (self.awaited, self.held) = (Some(Instant::now()), None);
         Some(tell)
     }
 }

@@ -90,6 +90,10 @@ impl Crew {
                 self.drop_shares(&mut asks);
                 None
             }
+            Ask::Hold | Ask::GoOn => {
+                asks.extend((0..self.mates.len()).map(|number| (number, ask.clone())));
+                None
+            }
             Ask::Look(..) | Ask::Inspect(..) | Ask::Shown | Ask::Store(..) | Ask::Help(_) => None,
         };
         let tells = leader.handle(ask, &Bundle::default());

@@ -35,6 +35,7 @@ use job::Job;
 pub use job::PORTION;
 use serde::Deserialize;
 use serde::Serialize;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -137,8 +138,9 @@ pub struct Seen {
     pub distance: f64,
 }
 
-/// How often a picture under way is shown.
-const SHOWN_EVERY: Duration = Duration::from_millis(40);
+/// How often a picture under way is shown: often while it is young, and then ever more seldom, for whoever draws it
+/// wants the time that traces it, and hears of nothing else meanwhile.
+const SHOWN_EVERY: Range<Duration> = Duration::from_millis(40)..Duration::from_millis(400);
 
 /// What the world is built anew of where shapes are left out.
 #[derive(Debug)]
@@ -226,10 +228,7 @@ impl Engine {
 
     /// Builds the world without what is hidden, once somebody wants to see it: many may be hidden one by one.
     fn leave_out(&mut self) {
-        if self.left_out == self.hidden {
-            return;
-        }
-        if self.whole.is_none() {
+        if self.left_out == self.hidden || self.whole.is_none() || self.world.is_none() {
             return;
         }
         let Some((mut whole, world)) = self.whole.take().zip(self.world.take()) else { return };
@@ -313,7 +312,8 @@ impl Engine {
     fn shown(&mut self, any: bool) -> Option<Reply> {
         let job = self.job.as_deref_mut()?;
         let now = Instant::now();
-        let due = job.last_shown.is_none_or(|last| now.duration_since(last) >= SHOWN_EVERY);
+        let pause = (now.duration_since(job.begun) / 3).clamp(SHOWN_EVERY.start, SHOWN_EVERY.end);
+        let due = job.last_shown.is_none_or(|last| now.duration_since(last) >= pause);
         let complete = job.film.is_complete();
         let reply = (complete || any && due).then(|| job.reply(now));
         if complete {
@@ -339,7 +339,12 @@ impl Engine {
     fn inspect(&mut self, request: &Request, x: f64, y: f64) -> Option<Reply> {
         self.leave_out();
         let world = self.world.as_deref()?;
-        let root = Tracer::new(world, &request.options, level()).inspect(camera_of(request).ray(x, y))?;
+        let interrupt = Interrupt::new(&self.interrupt, self.ask);
+        let mut tracer = Tracer::new(world, &request.options, level()).watched_by(&interrupt);
+        let Some(root) = tracer.inspect(camera_of(request).ray(x, y)) else {
+            let what = "the view has moved before all rays of the pixel were followed: click it again";
+            return Some(Reply::Refused(what.to_owned()));
+        };
         let size = world.bounds().size().length();
         let mut rows = rows(&root, if size > 0.0 { 2.0 * size } else { 1.0 });
         for row in &mut rows {

@@ -32,6 +32,9 @@ pub mod rays;
 
 pub mod engine;
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod letters;
+
 pub mod wire;
 
 pub mod clerk;

@@ -163,6 +163,11 @@ impl Link {
         self.desk.threads()
     }
 
+    /// Lets the tracer go on, which a page has held since a hand did something: the screen has seen it.
+    pub fn go_on(&self) {
+        self.desk.go_on();
+    }
+
     /// What has come since the last time; on a page this does a slice of the work.
     pub fn news(&mut self) -> Vec<News> {
         self.desk.work();

@@ -219,8 +219,9 @@ impl Packed {
     /// Lays down those shapes of a run that are among `shapes`.
     fn run(&mut self, resolved: &Resolved, run: &Run, shapes: &Range<u32>) {
         let file = resolved.files.get(run.file.0 as usize);
-        let frame = resolved.frames.get(run.frame as usize);
+        let frame = resolved.transform(run.frame);
         let (Some(file), Some(frame)) = (file, frame) else { return };
+        let frame = &frame;
         let written = file.shape_materials(run.kind);
         let end = (shapes.end - run.first_shape).min(run.count);
         for within in shapes.start.saturating_sub(run.first_shape)..end {
@@ -369,14 +370,14 @@ fn frames(resolved: &Resolved, view: &ViewFrame) -> Vec<[[f32; 4]; 3]> {
     if resolved.materials.iter().all(|material| material.procedural.is_empty()) {
         return Vec::new();
     }
-    let rows = |frame: &Transform| {
+    let rows = |frame: Transform| {
         let object_from_world = &frame.object_from_world;
         let m = object_from_world.matrix3 * view.unit;
         let t = object_from_world.transform_point3(view.center);
         let row = |at: usize, t: f64| m.row(at).extend(t).to_array().map(|x| x as f32);
         [row(0, t.x), row(1, t.y), row(2, t.z)]
     };
-    resolved.frames.iter().map(rows).collect()
+    (0..resolved.frames.len() as u32).filter_map(|number| resolved.transform(number)).map(rows).collect()
 }
 
 /// What stands somewhere in the view's frame.

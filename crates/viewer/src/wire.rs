@@ -53,6 +53,10 @@ pub enum Ask {
     Store(String, Vec<u8>),
     /// Traces tiles of a picture that another tracer puts together.
     Help(Box<Share>),
+    /// Stops for a moment: a hand does something that may move the camera.
+    Hold,
+    /// Goes on.
+    GoOn,
 }
 
 /// What a tracer tells a screen.

@@ -125,7 +125,7 @@ impl Worker {
     fn go_on(&mut self) {
         self.waiting = false;
         let heard = given("turn").and_then(|turn| turn.as_f64()).unwrap_or(0.0);
-        if heard > self.turn {
+        if heard > self.turn || !self.clerk.is_busy() {
             return;
         }
         if let Some(tell) = self.clerk.advance() {

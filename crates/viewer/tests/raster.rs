@@ -136,8 +136,11 @@ fn cells() -> Vec<u8> {
         1 => [0.2, 0.4, 0.8],
         _ => [0.8, 0.3, 0.3],
     };
-    let samples: Vec<f32> = (0..64).flat_map(pixel).collect();
-    let image = Image::from_samples(8, 8, dotray_image::Channels::Rgb, samples).expect("an image");
+    png(8, 8, (0..64).flat_map(pixel).collect())
+}
+
+fn png(width: usize, height: usize, samples: Vec<f32>) -> Vec<u8> {
+    let image = Image::from_samples(width, height, dotray_image::Channels::Rgb, samples).expect("an image");
     encode(&image, Format::Png, &EncodeOptions::default()).expect("a file")
 }
 
@@ -223,9 +226,7 @@ fn hills() -> Vec<u8> {
         0.5 + 0.25 * (x as f32 * 6.0 * std::f32::consts::TAU / 52.0).sin()
             + 0.25 * (y as f32 * std::f32::consts::TAU / 9.0).cos()
     };
-    let samples: Vec<f32> = (0..9 * 52).flat_map(|at| [height(at % 52, at / 52); 3]).collect();
-    let image = Image::from_samples(52, 9, dotray_image::Channels::Rgb, samples).expect("an image");
-    encode(&image, Format::Png, &EncodeOptions::default()).expect("a file")
+    png(52, 9, (0..9 * 52).flat_map(|at| [height(at % 52, at / 52); 3]).collect())
 }
 
 /// An image that leans the normals of one of each shape, as they are and in frames of all sorts.

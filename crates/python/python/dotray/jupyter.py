@@ -21,7 +21,7 @@ from dotray._tree import textures
 __all__ = ["Viewer", "view"]
 
 _WEB = Path(__file__).with_name("web")
-_PROGRAM = ("rayview.js", "rayview_bg.wasm.gz")
+_PROGRAM = ("rayview.js", "rayview_bg.wasm.gz", "crew.js", "tracer.js")
 
 
 class Viewer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]

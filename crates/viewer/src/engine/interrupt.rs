@@ -32,6 +32,10 @@ impl<'a> Interrupt<'a> {
 }
 
 impl Observer for Interrupt<'_> {
+    fn is_impatient(&self) -> bool {
+        true
+    }
+
     fn cancelled(&self) -> bool {
         if self.flag.load(Ordering::Relaxed) || self.stopped.load(Ordering::Relaxed) {
             return true;

@@ -49,6 +49,7 @@ pub struct Job {
     lent: Vec<Tile>,
     shown: Vec<u8>,
     meter: Meter,
+    pub begun: Instant,
     pub last_shown: Option<Instant>,
 }
 
@@ -63,8 +64,8 @@ impl Job {
         let shown = vec![0; film.image().width() * film.image().height() * 4];
         let (parts, mut meter) = (Some(picture.into_parts()), Meter::new());
         meter.advance(&film.progress());
-        let lent = Vec::new();
-        Ok(Self { request, parts, film, looks: 0, left, lent, shown, meter, last_shown: None })
+        let (lent, begun) = (Vec::new(), Instant::now());
+        Ok(Self { request, parts, film, looks: 0, left, lent, shown, meter, begun, last_shown: None })
     }
 
     /// Traces tiles for about [`PORTION`]; answers whether any was finished.

@@ -43,6 +43,14 @@ impl Desk {
         }
     }
 
+    pub fn go_on(&self) {
+        match &self.tracer {
+            Tracer::Elsewhere(port) => port.go_on(),
+            // It traces between two frames of the screen alone.
+            Tracer::Here(_) => {}
+        }
+    }
+
     /// How many threads trace, where that is known.
     pub fn threads(&self) -> Option<usize> {
         match &self.tracer {

@@ -1,5 +1,8 @@
 //! A tracer elsewhere: an object of the page's JavaScript with `postMessage` and `onmessage`, as workers have them.
 //! Messages are bytes; one that is `null` says that nobody is there any more.
+//!
+//! What a hand does is known to the screen with its next frame only, which may be late where the tracers want all
+//! cores. It is therefore heard here as it comes, and holds the tracer until that frame.
 
 use super::Asked;
 use super::News;
@@ -21,6 +24,7 @@ use crate::wire::packed;
 use crate::wire::unpacked;
 use dotray_image::Channels;
 use dotray_image::Image;
+use std::cell::Cell;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -36,20 +40,48 @@ use wasm_bindgen::closure::Closure;
 /// Messages as they came.
 type Arrived = Rc<RefCell<VecDeque<Option<Vec<u8>>>>>;
 
-/// See the module.
-pub struct Port {
+/// Where the tracer takes messages.
+#[derive(Clone)]
+struct Slot {
     object: JsValue,
     post: js_sys::Function,
     /// Whether large messages are packed, for a wire.
     packing: bool,
     /// Whether it is the page's own, with several threads.
-    pub is_own: bool,
+    is_own: bool,
+}
+
+impl Slot {
+    fn ask(&self, ask: &Ask) {
+        let bytes = bytes(ask);
+        let bytes = if self.packing { packed(&bytes) } else { bytes };
+        let bytes = js_sys::Uint8Array::from(bytes.as_slice());
+        // A thread takes a second argument for something else; the page's own tracers are told what cannot wait.
+        let waits = matches!(ask, Ask::Look(..) | Ask::Shown | Ask::Store(..) | Ask::GoOn);
+        // A tracer that is gone has said so.
+        let _ = match self.is_own && !waits {
+            true => self.post.call2(&self.object, &bytes, &JsValue::TRUE),
+            false => self.post.call1(&self.object, &bytes),
+        };
+    }
+}
+
+/// What may move the camera. The first one comes at once where a browser has it, all other moves with its next frame.
+const DEEDS: [&str; 5] = ["pointerrawupdate", "pointermove", "touchmove", "wheel", "keydown"];
+
+/// See the module.
+pub struct Port {
+    slot: Slot,
+    /// The picture that is being traced, by its number.
+    traced: Rc<Cell<Option<u64>>>,
+    /// Whether a hand holds the tracer.
+    held: Rc<Cell<bool>>,
     arrived: Arrived,
     /// What the scene's files are to be stored as.
     outgoing: Arc<Mutex<Vec<Ask>>>,
     /// The pixels that were shown last.
     before: Vec<u8>,
-    _listener: Closure<dyn FnMut(JsValue)>,
+    _listeners: [Closure<dyn FnMut(JsValue)>; 2],
 }
 
 fn get(object: &JsValue, name: &str) -> Option<JsValue> {
@@ -72,38 +104,45 @@ impl Port {
         });
         let taken = js_sys::Reflect::set(&object, &"onmessage".into(), listener.as_ref());
         taken.ok()?;
+        let slot = Slot { object, post, packing, is_own };
+        let (traced, held) = (Rc::new(Cell::new(None)), Rc::new(Cell::new(false)));
+        let brake = brake(page, &slot, &traced, &held, teller);
         Some(Self {
-            object,
-            post,
-            packing,
-            is_own,
+            slot,
+            traced,
+            held,
             arrived,
             outgoing: Arc::default(),
             before: Vec::new(),
-            _listener: listener,
+            _listeners: [listener, brake],
         })
     }
 
     /// Whether another program traces.
     pub fn is_served(&self) -> bool {
-        self.packing
+        self.slot.packing
     }
 
-    fn ask(&self, ask: &Ask) {
-        let bytes = bytes(ask);
-        let bytes = if self.packing { packed(&bytes) } else { bytes };
-        let bytes = js_sys::Uint8Array::from(bytes.as_slice());
-        // A thread takes a second argument for something else; the page's own tracers are told what cannot wait.
-        let urgent = self.is_own && !matches!(ask, Ask::Look(..) | Ask::Shown | Ask::Store(..));
-        // A tracer that is gone has said so.
-        let _ = match urgent {
-            true => self.post.call2(&self.object, &bytes, &JsValue::TRUE),
-            false => self.post.call1(&self.object, &bytes),
-        };
+    /// The screen has seen what the hand did.
+    pub fn go_on(&self) {
+        if self.held.replace(false) {
+            self.slot.ask(&Ask::GoOn);
+        }
     }
 
     pub fn send(&self, command: Command) {
-        self.ask(&match command {
+        match &command {
+            Command::Draw(request) => self.traced.set(Some(request.serial)),
+            Command::Stop => self.traced.set(None),
+            Command::World(_)
+            | Command::Rest(..)
+            | Command::Style(_)
+            | Command::Hide(_)
+            | Command::Look(..)
+            | Command::Inspect(..)
+            | Command::Help(_) => {}
+        }
+        self.slot.ask(&match command {
             // Worlds are built where they are traced.
             Command::World(_) | Command::Rest(..) | Command::Help(_) => return,
             Command::Hide(hidden) => Ask::Hide(hidden),
@@ -124,20 +163,20 @@ impl Port {
         let files =
             if asked.source.files.is_known_elsewhere() { Vec::new() } else { recorder.kept().files() };
         let (path, accel) = (asked.source.path.to_string_lossy().into_owned(), asked.prepare.accel.name());
-        self.ask(&Ask::Open { number: asked.number, path, accel: accel.to_owned(), files });
+        self.slot.ask(&Ask::Open { number: asked.number, path, accel: accel.to_owned(), files });
     }
 
     /// Takes what has come.
     pub fn work(&mut self, teller: &Teller) {
         let outgoing = std::mem::take(&mut *self.outgoing.lock().unwrap_or_else(PoisonError::into_inner));
-        outgoing.iter().for_each(|ask| self.ask(ask));
+        outgoing.iter().for_each(|ask| self.slot.ask(ask));
         let arrived = std::mem::take(&mut *self.arrived.borrow_mut());
         for bytes in arrived {
             let Some(bytes) = bytes else {
                 teller.tell(News::Notice("the tracer is gone: load the page again".to_owned()));
                 continue;
             };
-            let whole = if self.packing { unpacked(&bytes) } else { Ok(bytes) };
+            let whole = if self.slot.packing { unpacked(&bytes) } else { Ok(bytes) };
             match whole.and_then(|bytes| message(&bytes)) {
                 Ok(tell) => self.take(tell, teller),
                 Err(fault) => teller.tell(News::Notice(fault)),
@@ -161,7 +200,10 @@ impl Port {
             // What tracers tell each other goes to no screen.
             Tell::Prepared(..) | Tell::Failed(..) | Tell::Tracers(..) | Tell::Part(_) => {}
             Tell::Picture(sent) => {
-                self.ask(&Ask::Shown);
+                shown(self.slot.clone());
+                if sent.film.is_some() && self.traced.get() == Some(sent.serial) {
+                    self.traced.set(None);
+                }
                 let sent = sent.whole(&self.before);
                 self.before.clone_from(&sent.pixels);
                 let size = sent.size.map(|edge| edge as usize);
@@ -180,6 +222,47 @@ impl Port {
             Tell::Notice(sentence) => teller.tell(News::Notice(sentence)),
         }
     }
+}
+
+/// Has the tracer held as soon as a hand does something over the canvas while a picture is traced, and then a frame
+/// drawn, which lets the tracer go on.
+fn brake(
+    page: &Page,
+    slot: &Slot,
+    traced: &Rc<Cell<Option<u64>>>,
+    held: &Rc<Cell<bool>>,
+    teller: &Teller,
+) -> Closure<dyn FnMut(JsValue)> {
+    let (slot, traced, held, wake) = (slot.clone(), traced.clone(), held.clone(), teller.wake.clone());
+    let listener: Closure<dyn FnMut(JsValue)> = Closure::new(move |event: JsValue| {
+        // A pointer that only hovers moves nothing.
+        let hovers = get(&event, "buttons").and_then(|buttons| buttons.as_f64()) == Some(0.0);
+        let is_wheel = get(&event, "deltaY").is_some();
+        if traced.get().is_some() && (is_wheel || !hovers) && !held.replace(true) {
+            slot.ask(&Ask::Hold);
+            wake();
+        }
+    });
+    for deed in DEEDS {
+        // A browser that lets nobody listen shows its deeds with the next frame.
+        let _ = page.canvas.add_event_listener_with_callback_and_bool(
+            deed,
+            listener.as_ref().unchecked_ref(),
+            true,
+        );
+    }
+    listener
+}
+
+/// Asks for another picture once this one has been drawn: the browser's next frame but one comes no sooner.
+fn shown(slot: Slot) {
+    let call = |call: JsValue| {
+        let later = get(&js_sys::global(), "requestAnimationFrame")?.dyn_into::<js_sys::Function>().ok()?;
+        later.call1(&JsValue::NULL, &call).ok()
+    };
+    let ask = move || slot.ask(&Ask::Shown);
+    let next = move || drop(call(Closure::once_into_js(ask)));
+    call(Closure::once_into_js(next));
 }
 
 /// The finished picture of its samples' bytes.

@@ -10,15 +10,36 @@ use dotray_render::Textures;
 use dotray_scene::Resolved;
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use wasm_bindgen::JsCast;
+use wasm_bindgen::JsValue;
 use web_time::Instant;
 
 /// See the module.
-#[derive(Default)]
 pub struct Slices {
     engine: Engine,
     commands: RefCell<VecDeque<Command>>,
     /// A scene that was read and has to be built, after it was drawn.
     unbuilt: Option<Box<(Asked, Resolved, Textures)>>,
+}
+
+/// Whether a hand has done something; some browsers tell.
+fn is_input_pending() -> bool {
+    let get = |object: &JsValue, name: &str| js_sys::Reflect::get(object, &name.into()).ok();
+    let scheduling = get(&js_sys::global(), "navigator").and_then(|navigator| get(&navigator, "scheduling"));
+    let Some(scheduling) = scheduling.filter(JsValue::is_object) else { return false };
+    let Some(asked) = get(&scheduling, "isInputPending") else { return false };
+    let Ok(asked) = asked.dyn_into::<js_sys::Function>() else { return false };
+    let options = js_sys::Object::new();
+    let _ = js_sys::Reflect::set(&options, &"includeContinuous".into(), &JsValue::TRUE);
+    asked.call1(&scheduling, &options).is_ok_and(|pending| pending.is_truthy())
+}
+
+impl Default for Slices {
+    fn default() -> Self {
+        let mut engine = Engine::default();
+        engine.ask_whether_to_stop(is_input_pending);
+        Self { engine, commands: RefCell::default(), unbuilt: None }
+    }
 }
 
 impl Slices {

@@ -6,38 +6,35 @@ use super::Teller;
 use crate::engine::Command;
 use crate::engine::Engine;
 use crate::hidden::without_shapes;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::sync::atomic::Ordering;
-use std::sync::mpsc;
+use crate::letters::Next;
+use crate::letters::Receiver;
+use crate::letters::Sender;
+use crate::letters::letters;
 
 /// See the module.
 pub struct Desk {
-    commands: mpsc::Sender<Command>,
+    commands: Sender<Command>,
     teller: Teller,
-    /// Ends the tracer's portion, lest a command wait for it.
-    interrupt: Arc<AtomicBool>,
 }
 
 impl Desk {
     pub fn new(teller: Teller) -> Self {
-        let (commands, receiver) = mpsc::channel();
         let engine = Engine::default();
-        let interrupt = engine.interrupt();
+        let (commands, receiver) = letters(engine.interrupt());
         let of_tracer = teller.clone();
-        std::thread::spawn(move || trace(engine, &receiver, &of_tracer));
-        Self { commands, teller, interrupt }
+        std::thread::spawn(move || trace(engine, receiver, &of_tracer));
+        Self { commands, teller }
     }
 
     /// What drops the picture under way, or answers a click, ends the portion; what lies under the pointer can wait.
     pub fn send(&self, command: Command) {
         let at_once = !matches!(command, Command::Look(..));
         // A tracer that is gone has told why on the error stream.
-        let _ = self.commands.send(command);
-        if at_once {
-            self.interrupt.store(true, Ordering::Relaxed);
-        }
+        self.commands.send(command, at_once);
     }
+
+    /// A window's frame comes right after what a hand does: nothing is held before.
+    pub fn go_on(&self) {}
 
     pub fn open(&mut self, asked: Asked) {
         let (teller, commands) = (self.teller.clone(), self.commands.clone());
@@ -46,8 +43,8 @@ impl Desk {
             let start = web_time::Instant::now();
             let rest = Box::new(without_shapes(&resolved));
             if let Some(world) = teller.build(&asked, resolved, textures) {
-                let _ = commands.send(Command::World(Some(world)));
-                let _ = commands.send(Command::Rest(rest, asked.prepare.clone()));
+                commands.send(Command::World(Some(world)), false);
+                commands.send(Command::Rest(rest, asked.prepare.clone()), false);
                 teller.tell(News::Prepared(start.elapsed().as_secs_f64()));
             }
         });
@@ -62,26 +59,13 @@ impl Desk {
     pub fn work(&mut self) {}
 }
 
-/// The tracer's thread: commands come before work, so a new camera waits for one portion at most.
-fn trace(mut engine: Engine, commands: &mpsc::Receiver<Command>, teller: &Teller) {
-    let interrupt = engine.interrupt();
+/// The tracer's thread: commands come before work.
+fn trace(mut engine: Engine, mut commands: Receiver<Command>, teller: &Teller) {
     loop {
-        interrupt.store(false, Ordering::Relaxed);
-        let command = if engine.is_busy() {
-            match commands.try_recv() {
-                Ok(command) => Some(command),
-                Err(mpsc::TryRecvError::Empty) => None,
-                Err(mpsc::TryRecvError::Disconnected) => return,
-            }
-        } else {
-            match commands.recv() {
-                Ok(command) => Some(command),
-                Err(mpsc::RecvError) => return,
-            }
-        };
-        let replies = match command {
-            Some(command) => engine.handle(command),
-            None => engine.advance().into_iter().collect(),
+        let replies = match commands.next(engine.is_busy()) {
+            Next::Letter(command) => engine.handle(command),
+            Next::Work => engine.advance().into_iter().collect(),
+            Next::End => return,
         };
         replies.into_iter().for_each(|reply| teller.tell(News::Reply(reply)));
     }

@@ -21,15 +21,18 @@ pub fn show(panels: &mut Panels, ui: &Ui, state: &mut State) {
     };
     let anchor = egui::Align2::CENTER_BOTTOM;
     let mut open = true;
+    // As wide as the messages, whose lines are those of the file, where the window is.
+    let widest = (ui.ctx().content_rect().width() - 60.0).max(200.0);
     egui::Window::new(title)
         .id(egui::Id::unique("messages"))
         .open(&mut open)
         .anchor(anchor, [0.0, -40.0])
+        .auto_sized()
         .show(ui.ctx(), |ui| {
             if errors > 0 && state.document.is_some() {
                 ui.label("What is shown is the last good state of the file.");
             }
-            egui::ScrollArea::both().max_height(220.0).show(ui, |ui| {
+            egui::ScrollArea::both().max_height(220.0).max_width(widest).show(ui, |ui| {
                 for message in &state.messages {
                     let color =
                         if message.error { ui.visuals().error_fg_color } else { ui.visuals().warn_fg_color };

@@ -124,7 +124,7 @@ fn details(ui: &mut Ui, row: &RayRow, document: &Document) {
         for (name, end) in [("mirrored", row.ends[0]), ("refracted", row.ends[1])] {
             if let Some(end) = end {
                 ui.label(name);
-                ui.add(egui::Label::new(RichText::new(end_text(end)).weak()).truncate());
+                ui.add(egui::Label::new(RichText::new(end_text(end)).weak()).wrap());
                 ui.end_row();
             }
         }
@@ -132,7 +132,7 @@ fn details(ui: &mut Ui, row: &RayRow, document: &Document) {
             ui.label(format!("light {}", light.light));
             ui.horizontal(|ui| {
                 swatch(ui, light.gives);
-                ui.add(egui::Label::new(RichText::new(between(light)).weak()).truncate());
+                ui.add(egui::Label::new(RichText::new(between(light)).weak()).wrap());
             });
             ui.end_row();
         }

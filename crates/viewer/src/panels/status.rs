@@ -10,7 +10,13 @@ use eframe::egui::Ui;
 pub fn show(ui: &mut Ui, state: &State) {
     ui.horizontal(|ui| {
         let device = state.raster.as_ref().map_or_else(String::new, |raster| raster.device_name());
-        ui.label(device).on_hover_text("What draws the preview");
+        // Some drivers have long names, and what else stands here changes.
+        let widest = 0.35 * ui.available_width();
+        ui.scope(|ui| {
+            ui.set_max_width(widest);
+            ui.add(egui::Label::new(&device).truncate())
+                .on_hover_text(format!("What draws the preview: {device}"));
+        });
         ui.separator();
         if let Some(document) = &state.document {
             let name = document.path.file_name().unwrap_or(document.path.as_os_str()).to_string_lossy();

@@ -12,7 +12,7 @@ pub struct File {
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
 /// All that can be had.
-pub const PAGE: [File; 6] = [
+pub const PAGE: [File; 7] = [
     File {
         name: "index.html",
         kind: "text/html; charset=utf-8",
@@ -26,6 +26,7 @@ pub const PAGE: [File; 6] = [
         bytes: include_bytes!("../../web/dist/page.css"),
     },
     File { name: "page.js", kind: SCRIPT, packed: false, bytes: include_bytes!("../../web/dist/page.js") },
+    File { name: "crew.js", kind: SCRIPT, packed: false, bytes: include_bytes!("../../web/dist/crew.js") },
     File {
         name: "tracer.js",
         kind: SCRIPT,

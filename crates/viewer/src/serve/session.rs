@@ -5,6 +5,9 @@ use crate::bundle::Bundle;
 use crate::bundle::Recorder;
 use crate::clerk::Clerk;
 use crate::host::Home;
+use crate::letters::Next;
+use crate::letters::Receiver;
+use crate::letters::letters;
 use crate::link::Wake;
 use crate::memory;
 use crate::watch::Watch;
@@ -27,6 +30,7 @@ use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc;
 use std::time::Duration;
+use std::time::Instant;
 use tungstenite::Message;
 use tungstenite::WebSocket;
 use tungstenite::protocol::Role;
@@ -34,6 +38,9 @@ use tungstenite::protocol::WebSocketConfig;
 
 /// For how long the page is listened to before the tracer is.
 const TURN: Duration = Duration::from_millis(4);
+
+/// For how long a message may be on its way: a page that takes nothing any more is gone.
+const MOST_UNSENT: Duration = Duration::from_secs(60);
 
 /// Bytes that a message of the page may have: a scene's file that is written back is the largest.
 const MOST_ASKED: usize = 256 << 20;
@@ -52,39 +59,49 @@ struct Session<'a> {
     watch: Option<Watch>,
     /// Where tells are packed.
     packer: mpsc::Sender<Tell>,
+    /// Since when the wire has not taken the last message whole.
+    unsent_since: Option<Instant>,
+}
+
+fn is_waiting(fault: &std::io::Error) -> bool {
+    matches!(fault.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut)
 }
 
 /// Serves a page until it goes.
 pub fn run(stream: TcpStream, scene: &Path) {
-    if stream.set_read_timeout(Some(TURN)).is_err() || stream.set_nodelay(true).is_err() {
+    let prepared = stream.set_read_timeout(Some(TURN)).and(stream.set_write_timeout(Some(TURN)));
+    if prepared.and(stream.set_nodelay(true)).is_err() {
         return;
     }
     let config =
         WebSocketConfig::default().max_message_size(Some(MOST_ASKED)).max_frame_size(Some(MOST_ASKED));
     let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
     let bundle = Current::default();
-    let (asks, asked) = mpsc::channel();
-    let (teller, told) = mpsc::channel();
-    let (packer, packed) = mpsc::channel();
-    let mut session = Session { socket, scene, bundle: bundle.clone(), watch: None, packer: teller.clone() };
     let clerk = Clerk::default();
     let interrupt = clerk.interrupt();
-    let tracer = std::thread::spawn(move || trace(clerk, &asked, &teller, &bundle));
+    let (asks, asked) = letters(interrupt.clone());
+    let (teller, told) = mpsc::channel();
+    let (packer, packed) = mpsc::channel();
+    let (bundle_of_tracer, packer_of_session) = (bundle.clone(), teller.clone());
+    let mut session =
+        Session { socket, scene, bundle, watch: None, packer: packer_of_session, unsent_since: None };
+    let tracer = std::thread::spawn(move || trace(clerk, asked, &teller, &bundle_of_tracer));
     std::thread::spawn(move || pack(&told, &packer));
     // Whoever does not listen any more has gone.
     let _ = session.send_scene();
     while let Some(ask) = session.turn(&packed) {
         let Some(ask) = ask else { continue };
         let at_once = !matches!(ask, Ask::Look(..) | Ask::Shown);
-        if asks.send(ask).is_err() {
+        if matches!(ask, Ask::Hold) {
+            asks.hold();
+        } else if matches!(ask, Ask::GoOn) {
+            asks.go_on();
+        } else if !asks.send(ask, at_once) {
             break;
-        }
-        if at_once {
-            interrupt.store(true, Ordering::Relaxed);
         }
     }
     drop(asks);
-    interrupt.store(true, Ordering::Relaxed);
+    interrupt.store(true, Ordering::SeqCst);
     // What the tracer has to say of its end it has said on the error stream.
     let _ = tracer.join();
 }
@@ -101,16 +118,23 @@ impl Session<'_> {
             }
             Ok(Message::Close(_) | Message::Text(_)) => return None,
             Ok(Message::Ping(_) | Message::Pong(_) | Message::Frame(_)) => None,
-            Err(tungstenite::Error::Io(fault))
-                if matches!(fault.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) =>
-            {
-                None
-            }
+            Err(tungstenite::Error::Io(fault)) if is_waiting(&fault) => None,
             Err(_) => return None,
         };
         // One at a time: the next thing that the page asks may wait already.
-        if let Ok(bytes) = packed.try_recv() {
-            self.socket.send(Message::binary(bytes)).ok()?;
+        let sent = match self.unsent_since {
+            Some(_) => Some(self.socket.flush()),
+            None => packed.try_recv().ok().map(|bytes| self.socket.send(Message::binary(bytes))),
+        };
+        match sent {
+            Some(Ok(())) => self.unsent_since = None,
+            // A slow wire takes a picture by and by; what the page asks is heard meanwhile.
+            Some(Err(tungstenite::Error::Io(fault))) if is_waiting(&fault) => {
+                let since = *self.unsent_since.get_or_insert_with(Instant::now);
+                (since.elapsed() < MOST_UNSENT).then_some(())?;
+            }
+            Some(Err(_)) => return None,
+            None => {}
         }
         if matches!(self.watch.as_mut().map(Watch::changed), Some(Ok(true))) {
             self.send_scene()?;
@@ -142,6 +166,8 @@ impl Session<'_> {
             | Ask::Stop
             | Ask::Look(..)
             | Ask::Inspect(..)
+            | Ask::Hold
+            | Ask::GoOn
             | Ask::Shown => Some(Some(ask)),
         }
     }
@@ -222,25 +248,12 @@ fn read(scene: &Path) -> Bundle {
 }
 
 /// The tracer's thread: what is asked comes before work.
-fn trace(mut clerk: Clerk, asked: &mpsc::Receiver<Ask>, tells: &mpsc::Sender<Tell>, bundle: &Current) {
-    let interrupt = clerk.interrupt();
+fn trace(mut clerk: Clerk, mut asked: Receiver<Ask>, tells: &mpsc::Sender<Tell>, bundle: &Current) {
     loop {
-        interrupt.store(false, Ordering::Relaxed);
-        let ask = if clerk.is_busy() {
-            match asked.try_recv() {
-                Ok(ask) => Some(ask),
-                Err(mpsc::TryRecvError::Empty) => None,
-                Err(mpsc::TryRecvError::Disconnected) => return,
-            }
-        } else {
-            match asked.recv() {
-                Ok(ask) => Some(ask),
-                Err(mpsc::RecvError) => return,
-            }
-        };
-        let told = match ask {
-            Some(ask) => clerk.handle(ask, &*current(bundle)),
-            None => clerk.advance().into_iter().collect(),
+        let told = match asked.next(clerk.is_busy()) {
+            Next::Letter(ask) => clerk.handle(ask, &*current(bundle)),
+            Next::Work => clerk.advance().into_iter().collect(),
+            Next::End => return,
         };
         for tell in told {
             if tells.send(tell).is_err() {

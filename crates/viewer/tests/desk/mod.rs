@@ -4,6 +4,7 @@ use dotray_image::Image;
 use dotray_image::Limits;
 use std::io::BufRead;
 use std::io::BufReader;
+use std::io::Write;
 use std::path::Path;
 use std::process::Child;
 use std::process::Command;
@@ -14,6 +15,8 @@ use std::sync::PoisonError;
 use std::thread::sleep;
 use std::time::Duration;
 use std::time::Instant;
+use std::time::SystemTime;
+use std::time::UNIX_EPOCH;
 
 /// How long anything may take: software drivers on busy machines are slow.
 const PATIENCE: Duration = Duration::from_secs(150);
@@ -29,6 +32,9 @@ pub struct Desk {
     _alone: MutexGuard<'static, ()>,
     display: String,
 }
+
+/// A hand that is quick: one program that does what it is told as soon as it is told.
+pub struct Hand(Child);
 
 pub struct Window<'a> {
     desk: &'a Desk,
@@ -91,6 +97,13 @@ impl Desk {
         self.until("the window is drawn", || self.screen().to_rgb8(false).iter().any(|byte| *byte > 40));
         sleep(Duration::from_secs(2));
         window
+    }
+
+    /// A quick hand.
+    pub fn hand(&self) -> Hand {
+        let started =
+            Command::new("xdotool").arg("-").env("DISPLAY", &self.display).stdin(Stdio::piped()).spawn();
+        Hand(started.expect("xdotool"))
     }
 
     fn tool(&self, arguments: &[&str]) -> bool {
@@ -221,6 +234,69 @@ impl Window<'_> {
             self.pointer(at(from.0, to.0), at(from.1, to.1));
         }
         assert!(self.desk.tool(&["mouseup", "1"]));
+    }
+}
+
+impl Hand {
+    /// Does it; answers when it was told, in microseconds since 1970.
+    pub fn does(&mut self, what: &str) -> u128 {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).expect("after 1970").as_micros();
+        writeln!(self.0.stdin.as_mut().expect("its input"), "{what}").expect("it listens");
+        now
+    }
+}
+
+impl Drop for Hand {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// The clock ticks that all programs of the machine have had, and those of this one with its children.
+#[derive(Clone, Copy)]
+pub struct Ticks {
+    all: u64,
+    own: u64,
+    idle: u64,
+}
+
+impl Ticks {
+    /// Until now.
+    pub fn now() -> Self {
+        let numbers =
+            |text: &str| text.split_whitespace().filter_map(|it| it.parse().ok()).collect::<Vec<u64>>();
+        let stat = std::fs::read_to_string("/proc/stat").unwrap_or_default();
+        let first = numbers(stat.lines().next().unwrap_or_default());
+        let at = |index: usize| first.get(index).copied().unwrap_or_default();
+        let (all, idle) = (at(0) + at(1) + at(2) + at(5) + at(6), at(3) + at(4));
+        // Of every process its parent and what it and its dead children have had.
+        let processes: Vec<(u64, u64, u64)> = std::fs::read_dir("/proc")
+            .into_iter()
+            .flatten()
+            .flatten()
+            .filter_map(|entry| {
+                let text = std::fs::read_to_string(entry.path().join("stat")).ok()?;
+                let (_, rest) = text.rsplit_once(')')?;
+                let fields: Vec<&str> = rest.split_whitespace().collect();
+                let ticks = fields.get(11..15)?.iter().filter_map(|it| it.parse::<u64>().ok()).sum();
+                Some((entry.file_name().to_str()?.parse().ok()?, fields.get(1)?.parse().ok()?, ticks))
+            })
+            .collect();
+        let mut family = vec![u64::from(std::process::id())];
+        let mut next = 0;
+        while let Some(parent) = family.get(next).copied() {
+            family.extend(processes.iter().filter(|(_, of, _)| *of == parent).map(|(id, _, _)| *id));
+            next += 1;
+        }
+        let own = processes.iter().filter(|(id, _, _)| family.contains(id)).map(|(_, _, ticks)| ticks).sum();
+        Self { all, own, idle }
+    }
+
+    /// The share of the machine's time that other programs have had since then.
+    pub fn others_since(&self, before: &Self) -> f64 {
+        let (all, own) = (self.all - before.all, self.own.saturating_sub(before.own));
+        all.saturating_sub(own) as f64 / (all + self.idle - before.idle).max(1) as f64
     }
 }
 

@@ -8,6 +8,7 @@ import http.server
 import io
 import os
 import pathlib
+import shutil
 import subprocess
 import threading
 import time
@@ -86,12 +87,25 @@ def playwright():
         yield playwright
 
 
-def launched(playwright, *more):
-    """A Chromium that draws by software, with these flags."""
+def launched(playwright, *more, display=None):
+    """A Chromium that draws by software, with these flags; on a display, where one is named."""
     flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
     flags += ["--force-color-profile=srgb", "--disable-dev-shm-usage", *more]
     path = os.environ["CHROMIUM"]
-    return playwright.chromium.launch(executable_path=path, args=flags, chromium_sandbox=False)
+    screen = {"headless": False, "env": {**os.environ, "DISPLAY": display}} if display else {}
+    return playwright.chromium.launch(executable_path=path, args=flags, chromium_sandbox=False, **screen)
+
+
+@pytest.fixture
+def display():
+    """A display of its own, without a hand."""
+    lacking = [program for program in ("Xvfb", "xdotool", "import") if shutil.which(program) is None]
+    if lacking:
+        pytest.skip(f"no {lacking[0]}")
+    command = ["Xvfb", "-displayfd", "1", "-screen", "0", "1400x900x24", "-nolisten", "tcp", "-noreset"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
+        yield f":{server.stdout.readline().strip()}"
+        server.terminate()
 
 
 @pytest.fixture(scope="session")
@@ -171,7 +185,7 @@ class Viewer:
 
     def shot(self):
         """The view's pixels; the pointer is put where it shows nothing."""
-        self.page.mouse.move(5, self.page.evaluate("innerHeight") - 5)
+        self.page.mouse.move(*self.page.evaluate("[innerWidth - 5, innerHeight - 5]"))
         time.sleep(0.5)
         x, y, width, height = self.view()
         clip = {"x": x, "y": y, "width": width / self.scale, "height": height / self.scale}
@@ -203,6 +217,127 @@ class Viewer:
 
     def close(self):
         self.context.close()
+
+
+# Mirrors and glass among each other under lamps of many points: a few rays take longer than a move may wait.
+LAMPS = "\n".join(f"#light_area .1 .1 .1 {x} 9 6 -.1 -1 -.6 2 1 0 0" for x in range(-12, 12))
+BALLS = [f"#shape_sphere 2 {x * 0.5} {y * 0.5} {(x * x + 3 * y) % 4} .24\n" for x in range(-9, 9) for y in range(-4, 9)]
+HEAVY = SCENE.replace("#light_dir .3 .3 .3  -1 -1 -1", LAMPS).replace("#texture_num 1\n#texture cells.png\n", "")
+HEAVY = HEAVY.replace("  0 !textured!", "  -1 !plain!").replace("#material_num 2", "#material_num 3")
+HEAVY += "#material .1 .1 .1 .4 .4 .4 .5 .5 .5 0 0 0 .9 .9 1.5 -1 !glass!\n" + "".join(BALLS)
+
+# Notes when a hand has done something, and when a page's tracers are told something that cannot wait.
+NOTES = """
+    globalThis.deeds = [];
+    for (const name of ["wheel", "pointermove", "keydown"]) {
+        addEventListener(name, ({ buttons, repeat, timeStamp }) => {
+            if (buttons !== 0 && !repeat || name === "wheel") deeds.push([name, performance.timeOrigin + timeStamp]);
+        }, { capture: true });
+    }
+    globalThis.sent = {};
+    const post = Worker.prototype.postMessage;
+    Worker.prototype.postMessage = function (data, ...more) {
+        if (data.turn) sent[data.turn] ??= performance.timeOrigin + performance.now();
+        return post.call(this, data, ...more);
+    };
+"""
+# Notes in a tracer when it hears of it: it then traces nothing.
+HEARD = """() => {
+    globalThis.heard = {};
+    addEventListener("message", ({ data }) => {
+        if (data.turn) heard[data.turn] ??= performance.timeOrigin + performance.now();
+    });
+}"""
+
+
+def ticks():
+    """The clock ticks of all programs, of this one with its children, and of none."""
+    numbers = [int(number) for number in pathlib.Path("/proc/stat").read_text().split("\n")[0].split()[1:]]
+    processes = {}
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            fields = (folder / "stat").read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        processes[int(folder.name)] = int(fields[1]), sum(int(field) for field in fields[11:15])
+    family = [os.getpid()]
+    for parent in family:
+        family += [number for number, (of, _) in processes.items() if of == parent]
+    own = sum(processes[number][1] for number in family if number in processes)
+    return sum(numbers[:3]) + sum(numbers[5:7]), own, sum(numbers[3:5])
+
+
+class Moves:
+    """Moves over a picture that is traced, and how long each tracer has gone on after them, in milliseconds."""
+
+    def __init__(self, page, at):
+        """`at` says where in the page a part of the view is."""
+        before = ticks()
+        for turn in range(60):
+            x, y = at(0.35 + 0.005 * turn, 0.5)
+            page.mouse.move(x, y)
+            time.sleep(0.15)
+            if turn % 3 == 0:
+                page.mouse.wheel(0, 40 if turn % 2 else -40)
+            elif turn % 3 == 1:
+                page.mouse.down()
+                time.sleep(0.25)
+                page.mouse.move(x + 14, y + 3)
+                time.sleep(0.3)
+                page.mouse.up()
+            else:
+                key = "ArrowLeft" if turn % 2 else "ArrowRight"
+                page.keyboard.down(key)
+                time.sleep(0.2)
+                page.keyboard.up(key)
+            time.sleep(0.45)
+        everyone, own, idle = (after - before for after, before in zip(ticks(), before))
+        self.others = max(everyone - own, 0) / max(everyone + idle, 1)
+        # What follows one move at once belongs to it.
+        self.deeds, last = [], 0
+        for name, when in page.evaluate("deeds"):
+            if when > last + 250:
+                self.deeds.append((name, when))
+            last = when
+
+    def waits(self, heard):
+        """`heard(when)` is when all tracers had heard of a move."""
+        waits = {}
+        for name, when in self.deeds:
+            waits.setdefault(name, []).append(heard(when) - when)
+        for name, each in waits.items():
+            print(f"{name}: {len(each)} waits in ms, half {quantile(each, 0.5):.0f}, 95 % {quantile(each, 0.95):.0f}")
+        every = [wait for each in waits.values() for wait in each]
+        print(f"half {quantile(every, 0.5):.0f}, 95 % {quantile(every, 0.95):.0f}, all {max(every):.0f}")
+        print(f"other programs had {self.others:.2f} of the machine")
+        return waits
+
+    def by_workers(self, page):
+        """The waits of a page with tracers of its own."""
+        sent = sorted((when, int(turn)) for turn, when in page.evaluate("sent").items())
+        each = [{int(turn): when for turn, when in worker.evaluate("heard").items()} for worker in page.workers]
+
+        def heard(when):
+            turn = next((turn for at, turn in sent if at >= when), None)
+            assert turn is not None, "a move was never told"
+            return max(min(at for later, at in one.items() if later >= turn) for one in each)
+
+        return self.waits(heard)
+
+
+def judge(moves, waits):
+    """Browsers hand turns of the wheel out with their next frame alone, which comes late where all draws by software.
+    And nobody can promise anything where other programs want the cores."""
+    every = [wait for name, each in waits.items() if name != "wheel" for wait in each]
+    assert len(every) >= 30 and len(waits["wheel"]) >= 10
+    if moves.others < 0.1:
+        assert quantile(every, 0.95) <= 50, waits
+    else:
+        assert quantile(every, 0.5) < 500, waits
+
+
+def quantile(waits, part):
+    return sorted(waits)[min(int(len(waits) * part), len(waits) - 1)]
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import subprocess
 import time
 
 import pytest
-from conftest import SCENE, Viewer, pixels, rendered
+from conftest import HEAVY, NOTES, SCENE, Moves, Viewer, judge, pixels, rendered
 
 
 @pytest.fixture
@@ -71,6 +71,25 @@ def test_the_camera_is_written_into_the_file(viewer, scene):
     old, new = SCENE.splitlines(), written.splitlines()
     assert [a == b for a, b in zip(old, new)].count(False) == 1 and len(old) == len(new)
     assert new[1].startswith("#camera") and new[1] != old[1]
+
+
+def test_a_move_is_heard_soon(browser, scene):
+    """From the hand in the browser until the program has stopped tracing the old picture."""
+    (scene / "heavy.ray").write_text(HEAVY)
+    command = [os.environ["RAYVIEW"], "--serve", scene / "heavy.ray"]
+    environment = {**os.environ, "RAYVIEW_HEARD": str(scene / "heard")}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as program:
+        address = re.search(r"http://127\.0\.0\.1:\d+/[0-9a-f]{32}/", program.stdout.readline())[0]
+        viewer = Viewer(browser, address, size=(800, 450), prepare=lambda page: page.add_init_script(NOTES))
+        viewer.wait("data-prepared", "true")
+        viewer.page.keyboard.press("t")
+        time.sleep(4)
+        moves = Moves(viewer.page, viewer.at)
+        assert viewer.get("data-traced") == "false"
+        viewer.close()
+        program.kill()
+    heard = [int(line) / 1000 for line in (scene / "heard").read_text().split()]
+    judge(moves, moves.waits(lambda when: next(each for each in heard if each >= when)))
 
 
 def ask(served, path, **headers):

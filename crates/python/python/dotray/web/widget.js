@@ -5,7 +5,8 @@ const fetched = (model) => new Promise((done) => {
     if (!content || !content.names) return;
     model.off("msg:custom", hear);
     const parts = buffers.map((part) => new Uint8Array(part.buffer ?? part, part.byteOffset ?? 0, part.byteLength));
-    done({ glue: parts[0], packed: parts[1], files: content.names.map((name, index) => [name, parts[index + 2]]) });
+    const [glue, packed, crew, tracer, ...files] = parts;
+    done({ glue, packed, crew, tracer, files: content.names.map((name, index) => [name, files[index]]) });
   };
   model.on("msg:custom", hear);
   model.send("files");
@@ -13,28 +14,27 @@ const fetched = (model) => new Promise((done) => {
 
 const script = (text) => URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
 
-// A thread that runs the same program; where the page allows none, the viewer traces by itself.
-const threadOf = (glue, program) => new Promise((found) => {
-  const text = `import start from "${glue}";
-    onmessage = ({ data }) => { globalThis.rayview = {}; start({ module_or_path: data }); };`;
+// How many tracers a cell has at most: there may be many cells.
+const MOST = 4;
+
+// Threads that run the same program; where the page allows none, the viewer traces by itself.
+const tracers = async (glue, program, crew, tracer) => {
+  const own = new TextDecoder().decode(tracer).replace("./rayview.js", glue);
   try {
-    const worker = new Worker(script(text), { type: "module" });
-    worker.onmessage = () => found(worker);
-    worker.onerror = () => found(undefined);
-    worker.postMessage(program);
+    return await (await import(/* webpackIgnore: true */ script(crew))).crew(program, script(own), MOST);
   } catch {
-    found(undefined);
+    return undefined;
   }
-});
+};
 
 const startIn = async (model, canvas, say) => {
-  const { glue, packed, files } = await fetched(model);
+  const { glue, packed, crew, tracer: part, files } = await fetched(model);
   const whole = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const program = await WebAssembly.compile(await new Response(whole).arrayBuffer());
   // Each cell has the program's JavaScript for itself: it can be started once.
   const address = script(glue);
   const { default: start } = await import(/* webpackIgnore: true */ address);
-  const tracer = await threadOf(address, program);
+  const tracer = await tracers(address, program, crew, part);
   const given = { canvas, tracer, files, small: true };
   const begun = new Promise((done) => { given.say = (text) => { say(text); done(); }; });
   globalThis.rayview = given;
