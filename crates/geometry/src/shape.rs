@@ -14,7 +14,7 @@ pub use cone::{Cone, OrientedCone};
 pub use cuboid::Cuboid;
 pub use cylinder::{Cylinder, OrientedCylinder};
 pub use open::OpenSide;
-pub use sphere::Sphere;
+pub use sphere::{NarrowSphere, Sphere};
 pub use torus::Torus;
 pub use triangle::{Triangle, TriangleRay, face_normal, interpolated_normal, intersect_vertices};
 

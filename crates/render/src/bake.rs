@@ -12,6 +12,8 @@ use crate::own::OwnCuboid;
 use crate::own::OwnRound;
 use crate::own::OwnSphere;
 use crate::own::Spill;
+use crate::spheres::Spheres;
+use crate::spheres::are_narrow;
 use crate::stretch::Stretch;
 use crate::stretch::Stretches;
 use dotray_accel::Accelerator;
@@ -64,7 +66,7 @@ pub(crate) struct Baked {
     pub materials: Vec<u32>,
     /// The stretch of each position; empty where there is only one.
     pub stretches: Vec<u32>,
-    pub spheres: Vec<Sphere>,
+    pub spheres: Spheres,
     pub cuboids: Vec<Cuboid>,
     pub cylinders: Vec<OrientedCylinder>,
     pub cones: Vec<OrientedCone>,
@@ -170,7 +172,9 @@ impl Baked {
         let (spheres, cuboids) = (count(false, &[ShapeKind::Sphere]), count(false, &[ShapeKind::Cuboid]));
         let (cylinders, cones) = (count(false, &[ShapeKind::Cylinder]), count(false, &[ShapeKind::Cone]));
         let triangles = count(false, &[ShapeKind::Triangle, ShapeKind::IndexedTriangle]);
-        self.spheres.reserve_exact(spheres);
+        // The first that needs double precision is found soon, as a rule.
+        let narrow = lists.files.iter().all(|file| are_narrow(&file.spheres.shapes));
+        self.spheres = Spheres::with_capacity(spheres, narrow);
         self.cuboids.reserve_exact(cuboids);
         self.cylinders.reserve_exact(cylinders);
         self.cones.reserve_exact(cones);
@@ -295,7 +299,7 @@ impl Baked {
     pub fn expect(&self, first: u32, count: u32) {
         let (first, count) = (first as usize, count as usize);
         match self.only {
-            Some(Form::Sphere) => ahead::fetch_some(&self.spheres, first, count),
+            Some(Form::Sphere) => self.spheres.expect(first, count),
             Some(Form::Triangle) => ahead::fetch_some(&self.triangles, first, count),
             Some(Form::Cylinder) => ahead::fetch_some(&self.cylinders, first, count),
             Some(Form::Cone) => ahead::fetch_some(&self.cones, first, count),
@@ -324,7 +328,7 @@ impl Baked {
             + bytes(&self.numbers)
             + bytes(&self.materials)
             + bytes(&self.stretches)
-            + bytes(&self.spheres)
+            + self.spheres.memory()
             + bytes(&self.cuboids)
             + bytes(&self.cylinders)
             + bytes(&self.cones)

@@ -33,6 +33,8 @@ pub mod light;
 
 mod ways;
 
+mod spheres;
+
 mod spine;
 
 mod cull;

@@ -238,7 +238,7 @@ impl Shapes {
     pub fn crossings(&self, position: u32, ray: &Ray, triangle_ray: &TriangleRay) -> Crossings {
         let (form, index) = self.baked.slot(position);
         match form {
-            Form::Sphere => self.baked.spheres[index].crossings(ray),
+            Form::Sphere => self.baked.spheres.get(index).crossings(ray),
             Form::Triangle => match triangle_ray.intersect(&self.baked.triangles[index]) {
                 Some(t) => Crossings::one(Hit { t, face: 0 }),
                 None => Crossings::NONE,
@@ -350,7 +350,7 @@ impl Shapes {
     fn in_object(&self, position: u32, run: &Run) -> Shape {
         let (form, index) = self.baked.slot(position);
         match form {
-            Form::Sphere if run.frame == 0 => Shape::Sphere(self.baked.spheres[index]),
+            Form::Sphere if run.frame == 0 => Shape::Sphere(self.baked.spheres.get(index)),
             Form::Cuboid if run.frame == 0 => Shape::Cuboid(self.baked.cuboids[index]),
             Form::Triangle
                 if run.kind == ShapeKind::Triangle

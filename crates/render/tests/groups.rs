@@ -82,6 +82,35 @@ fn a_shape_alone_in_its_group_takes_few_bytes() {
     assert!(bytes_a_shape(&aside) <= 206, "{} bytes", bytes_a_shape(&aside));
 }
 
+/// Spheres in no group, their numbers as text that a number of single precision is written as, or any.
+fn spheres(count: usize, narrow: bool) -> String {
+    let mut state = 3;
+    let mut text = HEAD.to_owned();
+    for _ in 0..count {
+        let [x, y, z] = [(); 3].map(|()| 100.0 * random(&mut state));
+        let _ = match narrow {
+            true => writeln!(
+                text,
+                "#shape_sphere 0 {} {} {} 0.5",
+                x as f32 as f64, y as f32 as f64, z as f32 as f64
+            ),
+            false => writeln!(text, "#shape_sphere 0 {x} {y} {z} 0.5"),
+        };
+    }
+    text
+}
+
+#[test]
+fn a_sphere_takes_few_bytes_and_fewer_in_single_precision() {
+    let count = 20_000;
+    for (narrow, most) in [(true, 52), (false, 68)] {
+        let bytes = bytes_a_shape(&spheres(count, narrow));
+        assert!(bytes <= most, "{bytes} bytes, narrow: {narrow}");
+    }
+    let one_more = spheres(count, true) + "#shape_sphere 0 0.1 0 0 1\n";
+    assert!(bytes_a_shape(&one_more) > 60, "one sphere in double precision needs it for all");
+}
+
 /// Shapes of all kinds: alone in groups, together in one, in none.
 fn all_sorts() -> String {
     let mut state = 5;
@@ -125,7 +154,9 @@ fn same<T: std::fmt::Debug>(again: &ShapeList<T>, written: &ShapeList<T>) {
 
 #[test]
 fn what_was_written_comes_back() {
-    for text in [one_by_one(500, "#shape_cone 0 0 0 0 0.2 1"), all_sorts()] {
+    let spheres = spheres(500, true);
+    let mixed = spheres.clone() + "#shape_sphere 0 0.1 0 0 1\n#shape_sphere 0 -0.0 0 0 1\n";
+    for text in [one_by_one(500, "#shape_cone 0 0 0 0 0.2 1"), all_sorts(), spheres, mixed] {
         let written = resolved(&text);
         let mut rest = written.clone();
         (rest.runs, rest.frames) = (Vec::new(), Vec::new());

@@ -17,6 +17,21 @@ pub struct Sphere {
     radius: f64,
 }
 
+/// A sphere whose numbers are those of single precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NarrowSphere {
+    center: [f32; 3],
+    radius: f32,
+}
+
+impl From<NarrowSphere> for Sphere {
+    #[inline]
+    fn from(narrow: NarrowSphere) -> Self {
+        let center = Vec3::from_array(narrow.center.map(f64::from));
+        Self { center, radius: f64::from(narrow.radius) }
+    }
+}
+
 impl Sphere {
     /// A sphere about `center`.
     ///
@@ -42,6 +57,13 @@ impl Sphere {
     #[inline]
     pub const fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// The same sphere in half the memory; `None` where single precision would round a number.
+    #[inline]
+    pub fn narrowed(&self) -> Option<NarrowSphere> {
+        let narrow = NarrowSphere { center: self.center.as_vec3().to_array(), radius: self.radius as f32 };
+        (Self::from(narrow) == *self).then_some(narrow)
     }
 
     /// See [`super::Shape::crossings`].
@@ -105,6 +127,20 @@ mod tests {
     fn roots(sphere: &Sphere, origin: [f64; 3], direction: [f64; 3]) -> Vec<f64> {
         let ray = Ray::new(Vec3::from_array(origin), Vec3::from_array(direction));
         sphere.crossings(&ray).as_slice().iter().map(|hit| hit.t).collect()
+    }
+
+    #[test]
+    fn is_narrowed_where_nothing_is_lost() {
+        let center = Vec3::new(-0.0, f64::from(0.1_f32), f64::from(f32::MAX));
+        for radius in [1.0, f64::from(0.1_f32), f64::from(f32::MIN_POSITIVE / 8.0)] {
+            let sphere = Sphere::new(center, radius).unwrap();
+            let again = Sphere::from(sphere.narrowed().unwrap());
+            assert_eq!(again, sphere);
+            assert!(again.center().x.is_sign_negative());
+        }
+        for (center, radius) in [(center, 0.1), (center, 1e-60), (Vec3::new(0.0, 0.0, 1e300), 1.0)] {
+            assert_eq!(Sphere::new(center, radius).unwrap().narrowed(), None);
+        }
     }
 
     #[test]

@@ -106,10 +106,11 @@ impl Baked {
     /// Spheres in no group come by the million.
     fn push_spheres(&mut self, lists: &Lists, written: &[Sphere], stretch: &Stretch, numbers: &[u32]) {
         let (first, place) = (self.spheres.len(), self.slots.len());
-        self.spheres.extend(numbers.iter().map(|&number| written[stretch.entry(number)]));
+        let spheres = gathered(written, stretch, numbers);
+        self.spheres.extend(&spheres);
         self.slots.extend((first..first + numbers.len()).map(|index| Slot::new(Form::Sphere, index)));
         if let Some(frame) = &lists.cull_frame {
-            for (sphere, position) in self.spheres[first..].iter().zip(place..) {
+            for (sphere, position) in spheres.iter().zip(place..) {
                 self.culls.put_ball(frame, position, sphere.center(), sphere.radius());
             }
         }
@@ -134,7 +135,10 @@ impl Baked {
                 let own = OwnSphere::of(sphere, matrix, in_world.is_some(), &mut self.spills);
                 put(&mut self.own_spheres, Form::OwnSphere, own)
             }
-            Some(sphere) => put(&mut self.spheres, Form::Sphere, sphere),
+            Some(sphere) => {
+                self.spheres.push(sphere);
+                Slot::new(Form::Sphere, self.spheres.len() - 1)
+            }
             None => put(&mut self.framed_spheres, Form::FramedSphere, *sphere),
         }
     }
