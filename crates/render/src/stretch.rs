@@ -66,6 +66,10 @@ pub struct Stretches {
 /// The shapes from mark to mark.
 const STEP: u32 = 16;
 
+/// Up to so many shapes alone in their groups, their transforms and inverses are held ready like any others: they stay
+/// in a cache, and to compute them anew for each ray took up to a tenth of a picture's time.
+const FEW: usize = 1 << 14;
+
 /// Which of the transforms one shape has alone.
 fn own_frames(runs: &[Run], frame_count: usize) -> Vec<bool> {
     // More than one are all the same.
@@ -89,7 +93,15 @@ fn can_be_alone(run: &Run) -> bool {
 impl Stretches {
     /// These runs of `shape_count` shapes under so many transforms.
     pub fn new(runs: &[Run], frame_count: usize, shape_count: u32) -> Self {
-        let own = own_frames(runs, frame_count);
+        Self::where_more_than(FEW, runs, frame_count, shape_count)
+    }
+
+    /// The same; no more than `few` shapes alone in their groups are nothing special.
+    fn where_more_than(few: usize, runs: &[Run], frame_count: usize, shape_count: u32) -> Self {
+        let mut own = own_frames(runs, frame_count);
+        if own.iter().filter(|own| **own).count() <= few {
+            own.fill(false);
+        }
         let mut list: Vec<Stretch> = Vec::new();
         for run in runs {
             let alone = own[run.frame as usize];
@@ -194,11 +206,14 @@ mod tests {
             run.colors = RunColors::Shapes { list: 0, first: run.first + 7 };
         }
         let count = runs.iter().map(|run| run.count).sum();
-        let stretches = Stretches::new(&runs, 60, count);
+        let stretches = Stretches::where_more_than(0, &runs, 60, count);
         let shapes: Vec<_> = stretches.list().iter().map(|s| (s.run.count, s.alone)).collect();
         let expected =
             [(40, true), (1, true), (1, false), (1, false), (2, false), (1, false), (5, true), (10, true)];
         assert_eq!(shapes, expected);
+        let few = Stretches::where_more_than(56, &runs, 60, count);
+        assert_eq!(few.list().len(), runs.len());
+        assert!(few.list().iter().all(|stretch| !stretch.alone));
         assert_eq!(stretches.list().iter().flat_map(Stretch::runs).collect::<Vec<_>>(), runs);
         for run in &runs {
             let found = stretches.list()[stretches.find(run.first_shape)];

@@ -1,5 +1,8 @@
 //! Shapes in groups: what they take at rest, and that they come back as they were written.
 
+use dotray_accel::Queries;
+use dotray_geometry::Ray;
+use dotray_geometry::Vec3;
 use dotray_render::Caster;
 use dotray_render::PrepareOptions;
 use dotray_render::Textures;
@@ -55,6 +58,9 @@ fn one_by_one(count: usize, shape: &str) -> String {
     text
 }
 
+/// So many shapes alone in their groups are held with their matrices; few are held ready for rays.
+const MANY: usize = 24_000;
+
 /// The bytes a shape at rest, tree and all.
 fn bytes_a_shape(text: &str) -> u64 {
     let caster = Caster::build(resolved(text), &PrepareOptions::default());
@@ -63,7 +69,7 @@ fn bytes_a_shape(text: &str) -> u64 {
 
 #[test]
 fn a_shape_alone_in_its_group_takes_few_bytes() {
-    let count = 20_000;
+    let count = MANY;
     // What they take now, and one byte in a hundred for spills and chance.
     for (shape, most) in [
         ("#shape_cylinder 0 0 0 0 0.2 1", 148),
@@ -112,7 +118,7 @@ fn a_sphere_takes_few_bytes_and_fewer_in_single_precision() {
 }
 
 /// Shapes of all kinds: alone in groups, together in one, in none.
-fn all_sorts() -> String {
+fn all_sorts(count: usize) -> String {
     let mut state = 5;
     let mut text = HEAD.to_owned();
     let shapes = [
@@ -125,7 +131,7 @@ fn all_sorts() -> String {
         "#shape_sphere 0 0 0 0 0.2",
         "#shape_sphere 1 0 7 0 0.3",
     ];
-    for index in 0..300 {
+    for index in 0..count {
         let shape = shapes[index / 3 % shapes.len()];
         let other = shapes[index % 7];
         match index % 11 {
@@ -156,7 +162,9 @@ fn same<T: std::fmt::Debug>(again: &ShapeList<T>, written: &ShapeList<T>) {
 fn what_was_written_comes_back() {
     let spheres = spheres(500, true);
     let mixed = spheres.clone() + "#shape_sphere 0 0.1 0 0 1\n#shape_sphere 0 -0.0 0 0 1\n";
-    for text in [one_by_one(500, "#shape_cone 0 0 0 0 0.2 1"), all_sorts(), spheres, mixed] {
+    for text in
+        [one_by_one(MANY, "#shape_cone 0 0 0 0 0.2 1"), all_sorts(300), all_sorts(MANY), spheres, mixed]
+    {
         let written = resolved(&text);
         let mut rest = written.clone();
         (rest.runs, rest.frames) = (Vec::new(), Vec::new());
@@ -171,6 +179,30 @@ fn what_was_written_comes_back() {
             same(&again.cuboids, &written.cuboids);
             same(&again.cylinders, &written.cylinders);
             same(&again.cones, &written.cones);
+        }
+    }
+}
+
+#[test]
+fn shapes_are_met_alike_whether_there_are_few_or_many() {
+    let few = all_sorts(2000);
+    let far = one_by_one(MANY, "#shape_cylinder 0 0 0 0 0.2 1");
+    let far = far.strip_prefix(HEAD).expect("the head");
+    let many = format!("{few}#group_begin 1 0 0 9000 0 1 0 0 0 0 1 0 0 0 0 1\n{far}#group_end\n");
+    let [few, many] = [few, many].map(|text| Caster::build(resolved(&text), &PrepareOptions::default()));
+    let mut state = 7;
+    // Towards the middle, where the shapes lie, and past it: nothing of what is far away is on these ways.
+    let mut point = |size: f64| Vec3::new(random(&mut state), random(&mut state), random(&mut state)) * size;
+    let rays: Vec<Ray> = (0..40_000)
+        .map(|_| (point(200.0), point(60.0)))
+        .map(|(a, b)| Ray::new(a, (b - a).normalize()))
+        .collect();
+    let queries = Queries { rays: &rays, t_min: &[0.0], t_max: &[500.0] };
+    for together in [false, true] {
+        let hits = few.nearest(&queries, together);
+        assert!(hits.iter().flatten().count() > 2000, "{}", hits.iter().flatten().count());
+        for (few, many) in hits.iter().zip(many.nearest(&queries, together)) {
+            assert_eq!(few.map(|hit| (hit.number, hit.hit)), many.map(|hit| (hit.number, hit.hit)));
         }
     }
 }
