@@ -50,9 +50,25 @@ fn serve(_: Option<PathBuf>, _: u16) -> Result<(), String> {
         .to_owned())
 }
 
+/// Threads that trace step back behind the one that draws and hears of hands, and behind a driver in software.
+fn step_back() {
+    // Where there are pools already, or no priorities, all take turns.
+    let _ = rayon::ThreadPoolBuilder::new().start_handler(|_| have_patience()).build_global();
+}
+
+#[cfg(target_os = "linux")]
+fn have_patience() {
+    // There a priority is the thread's own.
+    let _ = rustix::process::nice(10);
+}
+
+#[cfg(not(target_os = "linux"))]
+fn have_patience() {}
+
 /// Opens it.
 pub fn main() -> ExitCode {
     let args = Args::parse();
+    step_back();
     if args.serve {
         return match serve(args.scene, args.port) {
             Ok(()) => ExitCode::SUCCESS,
