@@ -203,8 +203,8 @@ impl Raster {
             .then(|| (vertex_buffer(&self.state.device, bytemuck::cast_slice(&ends)), ends.len() as u32));
     }
 
-    /// Draws the scene into a picture of this size, or the lines alone over nothing. It may be a draft: see
-    /// [`Raster::go_on`].
+    /// Draws the scene into a picture of this size, or the lines alone over nothing: no picture where there are none. It
+    /// may be a draft: see [`Raster::go_on`].
     pub fn draw(&mut self, camera: &Camera, size: [u32; 2], lines_only: bool) -> Option<egui::TextureId> {
         let most = self.state.device.limits().max_texture_dimension_2d;
         let size = size.map(|edge| edge.clamp(1, most));
@@ -218,6 +218,7 @@ impl Raster {
         self.state.queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(&uniforms));
         (self.drawn, self.last_portion) = (None, None);
         if lines_only {
+            self.lines.as_ref()?;
             self.paint(self.target.as_ref()?, None, Some(wgpu::Color::TRANSPARENT), true);
         } else if let Some(draft) = &loaded.draft {
             fit(&self.state, &mut self.rough, size.map(|edge| edge.div_ceil(2)));
