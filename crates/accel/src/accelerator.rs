@@ -57,7 +57,9 @@ pub struct Built {
     pub order: Option<Vec<u32>>,
 }
 
-/// Trees of as many nodes (3.5 MB), and the shapes in their leaves, do not fit the memory next to a processor.
+/// Trees of as many nodes (3.5 MB), and the shapes in their leaves, do not fit the memory next to a processor. (Tried
+/// and dropped: 2^12. Random rays in meshes of 70,000 triangles took up to 30 % less time, but among 100,000 spheres or
+/// cylinders 5 to 15 % more.)
 const FAR: usize = 1 << 14;
 
 impl Accelerator {
