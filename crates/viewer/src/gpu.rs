@@ -203,8 +203,8 @@ impl Raster {
             .then(|| (vertex_buffer(&self.state.device, bytemuck::cast_slice(&ends)), ends.len() as u32));
     }
 
-    /// Draws the scene into a picture of this size, or the lines alone over nothing: no picture where there are none. It
-    /// may be a draft: see [`Raster::go_on`].
+    /// Draws the scene into a picture of this size, or the lines alone over nothing: no picture where there are none.
+    /// It may be a draft: see [`Raster::go_on`].
     pub fn draw(&mut self, camera: &Camera, size: [u32; 2], lines_only: bool) -> Option<egui::TextureId> {
         let most = self.state.device.limits().max_texture_dimension_2d;
         let size = size.map(|edge| edge.clamp(1, most));
