@@ -56,16 +56,18 @@ fn killed_again_and_again_and_resumed_it_makes_the_same_picture() {
     for more in ["", "--aa adaptive --aa-threshold 0 --background transparent"] {
         let line = if more.is_empty() { SLOW.to_owned() } else { SLOW.replace("--aa grid=5", more) };
         let folder = Folder::new();
-        let start_of_whole = Instant::now();
         folder.run(&line.replace("a.png", "whole.png")).expect(0);
-        let whole = start_of_whole.elapsed();
+        let kept = || std::fs::metadata(folder.path("c.tiles")).map_or(0, |meta| meta.len());
         let mut kills = 0;
-        // Times that no pattern of the program's own follows, parts of what the whole takes here; the last runs are left
-        // in peace.
+        // Each time after some more tiles, a few milliseconds sooner or later; the last run is left in peace.
         for attempt in 0_u64.. {
+            let goal = kept() + 60_000 + attempt * 7919 % 331 * 200;
             let mut child = start(&folder, &format!("{line} --checkpoint c.tiles --every 10ms --resume"));
-            std::thread::sleep(whole.mul_f64(0.03 + (attempt * 7919 % 331) as f64 / 3000.0));
-            if attempt < 12 && child.try_wait().expect("a child").is_none() {
+            let mut runs = || child.try_wait().expect("a child").is_none();
+            while attempt < 12 && runs() && kept() < goal {
+                std::thread::sleep(Duration::from_millis(attempt % 7));
+            }
+            if attempt < 12 && runs() {
                 child.kill().and_then(|()| child.wait()).expect("killed");
                 kills += 1;
                 continue;
