@@ -204,7 +204,9 @@ def test_a_pool_that_breaks_is_made_again(tmp_path):
         return pools[-1]
 
     def kill():
-        os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
+        # Between two results: half of one would lie in the pipe, and Python's pool would wait for the rest for ever.
+        with pools[0]._result_queue._wlock:
+            os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
 
     with ThreadPoolExecutor(2) as executor:
         quiet, _ = film(executor, tmp_path / "quiet")
