@@ -3,6 +3,7 @@
 use crate::options::Options;
 use crate::options::PrepareOptions;
 use crate::stats::MemoryPart;
+use crate::stretch::may_be_alone;
 use dotray_accel::Kind;
 use dotray_geometry::Affine;
 use dotray_geometry::Cuboid;
@@ -43,15 +44,6 @@ fn baked(run: &Run) -> u64 {
     };
     let own = if may_be_alone(run) { OWN } else { 0 };
     u64::from(run.count) * ((form as u64).max(own) + PLACE)
-}
-
-/// Whether the shape may be alone in its group: then it is laid down with its transform.
-fn may_be_alone(run: &Run) -> bool {
-    let has_form = match run.kind {
-        ShapeKind::Sphere | ShapeKind::Cuboid | ShapeKind::Cylinder | ShapeKind::Cone => true,
-        ShapeKind::Triangle | ShapeKind::IndexedTriangle | ShapeKind::Torus | ShapeKind::Open => false,
-    };
-    has_form && run.frame != 0 && run.count == 1
 }
 
 /// How many transforms are kept for several shapes, at most.

@@ -19,6 +19,8 @@ pub mod observer;
 
 pub mod progress;
 
+mod stretch;
+
 pub mod estimate;
 
 pub mod camera;
@@ -42,8 +44,6 @@ mod cull;
 mod form;
 
 mod own;
-
-mod stretch;
 
 mod leaving;
 

@@ -76,18 +76,18 @@ fn own_frames(runs: &[Run], frame_count: usize) -> Vec<bool> {
     let mut users = vec![0_u8; frame_count];
     for run in runs {
         let users = &mut users[run.frame as usize];
-        *users = if *users == 0 && run.count == 1 && can_be_alone(run) { 1 } else { 2 };
+        *users = if *users == 0 && may_be_alone(run) { 1 } else { 2 };
     }
     users.into_iter().map(|users| users == 1).collect()
 }
 
-/// Whether there is a form for such a shape that holds its transform.
-fn can_be_alone(run: &Run) -> bool {
+/// Whether it is one shape, and there is a form for such a shape that holds its transform.
+pub fn may_be_alone(run: &Run) -> bool {
     let has_form = match run.kind {
         ShapeKind::Sphere | ShapeKind::Cuboid | ShapeKind::Cylinder | ShapeKind::Cone => true,
         ShapeKind::Triangle | ShapeKind::IndexedTriangle | ShapeKind::Torus | ShapeKind::Open => false,
     };
-    has_form && run.frame != 0
+    has_form && run.frame != 0 && run.count == 1
 }
 
 impl Stretches {
