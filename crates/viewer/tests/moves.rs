@@ -1,5 +1,7 @@
 //! How soon the tracer behind the screen hears a move. Alone in its file: other tests would take its threads away.
 
+mod heavy;
+
 use dotray_render::Antialias;
 use dotray_render::Options;
 use dotray_render::PrepareOptions;
@@ -16,16 +18,8 @@ use std::sync::mpsc::TryRecvError;
 use std::time::Duration;
 use std::time::Instant;
 
-/// Mirrors and glass among each other under two lamps of many points: every ray sends two more, many times.
-fn heavy() -> Box<World> {
-    let mut text = "#camera 0 0 14 0 0 -1 0 1 0 .5 #background .3 .4 .5
-        #light_area .6 .6 .6 4 9 6 -.4 -1 -.6 2 1 0 0 #light_area .5 .5 .4 -6 8 3 .6 -1 -.3 2 1 0 0
-        #material .1 .1 .1 .4 .4 .4 .5 .5 .5 0 0 0 .9 .9 1.5 -1 !glass!"
-        .to_owned();
-    for (x, y) in (-9..9).flat_map(|x| (-7..7).map(move |y| (x, y))) {
-        text += &format!("\n#shape_sphere 0 {} {} {} .49", x, y, (x * x + 3 * y) % 4);
-    }
-    let scene = load_text("heavy.ray", text, &Disk, &LoadOptions::default()).scene.expect("a scene");
+fn heavy_world() -> Box<World> {
+    let scene = load_text("heavy.ray", heavy::text(), &Disk, &LoadOptions::default()).scene.expect("a scene");
     let resolved = resolve(scene).resolved.expect("resolved");
     Box::new(World::prepare(resolved, &Disk, &PrepareOptions::default()).expect("a world"))
 }
@@ -33,7 +27,7 @@ fn heavy() -> Box<World> {
 /// Moves come at any time while a picture is traced that takes minutes; each is to be heard within 50 ms.
 #[test]
 fn a_move_is_heard_within_50_milliseconds() {
-    let world = heavy();
+    let world = heavy_world();
     let options = Options {
         width: 120,
         height: 90,

@@ -5,6 +5,8 @@
 #[allow(dead_code, reason = "another test file uses the rest")]
 mod desk;
 
+mod heavy;
+
 use desk::Desk;
 use desk::Ticks;
 use dotray_image::EncodeOptions;
@@ -177,25 +179,13 @@ fn the_window_is_sharp_on_a_dense_screen() {
     desk.keep("dense");
 }
 
-/// Mirrors and glass among each other under lamps of many points: a picture takes minutes.
-fn heavy() -> String {
-    let mut text = "#camera 0 0 14 0 0 -1 0 1 0 .5 #background .3 .4 .5
-        #light_area .6 .6 .6 4 9 6 -.4 -1 -.6 2 1 0 0 #light_area .5 .5 .4 -6 8 3 .6 -1 -.3 2 1 0 0
-        #material .1 .1 .1 .4 .4 .4 .5 .5 .5 0 0 0 .9 .9 1.5 -1 !glass!"
-        .to_owned();
-    for (x, y) in (-9..9).flat_map(|x| (-7..7).map(move |y| (x, y))) {
-        text += &format!("\n#shape_sphere 0 {} {} {} .49", x, y, (x * x + 3 * y) % 4);
-    }
-    text
-}
-
 /// From the moment a hand moves until nothing of the old picture is traced any more.
 #[test]
 fn a_move_is_heard_soon() {
     let Some(desk) = Desk::new() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let (path, heard) = (folder.path().join("heavy.ray"), folder.path().join("heard"));
-    std::fs::write(&path, heavy()).expect("written");
+    std::fs::write(&path, heavy::text()).expect("written");
     let variables = [(rayview::letters::HEARD, heard.to_str().expect("a name"))];
     let window = desk.open_by(&variables, &path, &["--window", "960x520", "--traced"], "1");
     desk.until("a move is heard", || {
