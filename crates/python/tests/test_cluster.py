@@ -6,6 +6,7 @@ import os
 import pickle
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -204,9 +205,7 @@ def test_a_pool_that_breaks_is_made_again(tmp_path):
         return pools[-1]
 
     def kill():
-        # Between two results: half of one would lie in the pipe, and Python's pool would wait for the rest for ever.
-        with pools[0]._result_queue._wlock:
-            os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
+        os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
 
     with ThreadPoolExecutor(2) as executor:
         quiet, _ = film(executor, tmp_path / "quiet")
@@ -216,6 +215,44 @@ def test_a_pool_that_breaks_is_made_again(tmp_path):
         pools[:] = [broken]
         with pytest.raises(cluster.LostWork, match="give a function that makes one|lost too often"):
             film(broken, tmp_path / "broken", kill)
+
+
+def die_sending(once):
+    """Initializes a worker that is killed in the midst of its second result, unless the file ``once`` is there."""
+    from multiprocessing.connection import Connection
+
+    whole, sent = Connection.send_bytes, []
+
+    def send_bytes(self, content):
+        sent.append(content)
+        if len(sent) == 2:
+            try:
+                once.touch(exist_ok=False)
+            except FileExistsError:
+                pass
+            else:
+                os.write(self.fileno(), struct.pack("!i", len(content)) + bytes(content[: len(content) // 2]))
+                os.kill(os.getpid(), signal.SIGKILL)
+        whole(self, content)
+
+    Connection.send_bytes = send_bytes
+
+
+def test_a_worker_killed_in_the_midst_of_sending_holds_nothing_up(expected, tmp_path):
+    pools = []
+
+    def make():
+        context = multiprocessing.get_context("spawn")
+        pools.append(
+            ProcessPoolExecutor(2, mp_context=context, initializer=die_sending, initargs=(tmp_path / "once",))
+        )
+        return pools[-1]
+
+    check(cluster.render(scene(), 200, 150, executor=make, piece=64, **OPTIONS), expected)
+    assert len(pools) == 2
+    (tmp_path / "once").unlink()
+    with make() as broken, pytest.raises(cluster.LostWork, match="give a function that makes one|lost too often"):
+        cluster.render(scene(), 200, 150, executor=broken, piece=64)
 
 
 def test_a_killed_worker_of_dask_loses_nothing(tmp_path, capsys):

@@ -109,6 +109,21 @@ class Engine:
         self.executor = self.make()
         return True
 
+    def free(self) -> None:
+        """Has a pool of processes notice that one of them is dead, where half of a result keeps it from noticing.
+
+        A worker that is killed in the midst of sending leaves half a message in the pipe, and Python's pool waits for
+        the rest for ever: seen with Python 3.11. Once nobody can write there any more, it finds itself broken.
+        """
+        processes = list((getattr(self.executor, "_processes", None) or {}).values())
+        if not any(process.exitcode for process in processes):
+            return
+        for process in processes:
+            process.kill()
+        results = getattr(self.executor, "_result_queue", None)
+        if results is not None:
+            results._writer.close()
+
     def close(self) -> None:
         if self.file is not None:
             self.file.unlink(missing_ok=True)

@@ -104,6 +104,7 @@ def _gather(
             # A worker that answers no more, though nobody knows yet that it is lost: others do its work as well.
             late = time.monotonic() - max(patience, 2.0 * longest)
             if not done:
+                engine.free()
                 for task in {id(task): task for task in owners.values()}.values():
                     if task.started < late and len(task.futures) <= retries:
                         submit(task, twin=True)
