@@ -16,7 +16,9 @@ pub use cylinder::{Cylinder, OrientedCylinder};
 pub use open::OpenSide;
 pub use sphere::{NarrowSphere, Sphere};
 pub use torus::Torus;
-pub use triangle::{Triangle, TriangleRay, face_normal, interpolated_normal, intersect_vertices};
+pub use triangle::{
+    Triangle, TriangleRay, corner_bounds, face_normal, interpolated_normal, intersect_vertices,
+};
 
 use crate::aabb::Aabb;
 use crate::hit::{Crossings, Hit, Surface};

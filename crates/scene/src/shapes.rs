@@ -9,6 +9,7 @@ use crate::span::Span;
 use dotray_geometry::OpenSide;
 use dotray_geometry::Shape;
 use dotray_geometry::Triangle;
+use dotray_geometry::Vec3;
 
 impl ShapeKind {
     /// Every kind.
@@ -107,6 +108,25 @@ impl SceneFile {
         let vertices = [a?, b?, c?];
         let [positions, normals] = [vertices.map(|v| v.position), vertices.map(|v| v.normal)];
         Triangle::new(positions, normals, vertices.map(|v| v.texcoord)).ok()
+    }
+
+    /// The corners of a triangle of either kind; `None` for other kinds, and beyond the end of the list.
+    #[inline]
+    pub fn corners(&self, kind: ShapeKind, index: usize) -> Option<[Vec3; 3]> {
+        match kind {
+            ShapeKind::Triangle => self.triangles.shapes.get(index).map(|triangle| *triangle.vertices()),
+            ShapeKind::IndexedTriangle => {
+                let corners = self.indexed_triangles.shapes.get(index)?;
+                let [a, b, c] = corners.map(|corner| self.vertices.get(corner as usize));
+                Some([a?.position, b?.position, c?.position])
+            }
+            ShapeKind::Sphere
+            | ShapeKind::Cuboid
+            | ShapeKind::Cylinder
+            | ShapeKind::Cone
+            | ShapeKind::Torus
+            | ShapeKind::Open => None,
+        }
     }
 
     /// The colours of a shared triangle's corners, where all have one.

@@ -124,10 +124,15 @@ impl Triangle {
 
     /// See [`super::Shape::world_bounds`].
     pub fn world_bounds(&self, world_from_object: &Affine) -> Aabb {
-        let [v1, v2, v3] = self.vertices.map(|v| v.abs());
-        Aabb::around(self.vertices.map(|v| world_from_object.transform_point3(v)))
-            .padded(image_magnitude(world_from_object, v1.max(v2).max(v3)))
+        corner_bounds(&self.vertices, world_from_object)
     }
+}
+
+/// The box in the world of a triangle with these corners.
+pub fn corner_bounds(vertices: &[Vec3; 3], world_from_object: &Affine) -> Aabb {
+    let [v1, v2, v3] = vertices.map(|v| v.abs());
+    Aabb::around(vertices.map(|v| world_from_object.transform_point3(v)))
+        .padded(image_magnitude(world_from_object, v1.max(v2).max(v3)))
 }
 
 /// The unit normal of the side from which the corners run counter-clockwise; +y where they have no area.

@@ -2,6 +2,7 @@
 
 use super::Baked;
 use super::Lists;
+use super::written_corners;
 use super::written_shape;
 use crate::form::Form;
 use crate::form::Slot;
@@ -93,7 +94,15 @@ impl Baked {
                     self.slots.push(slot);
                 }
             }
-            ShapeKind::Triangle | ShapeKind::IndexedTriangle | ShapeKind::Torus | ShapeKind::Open => {
+            ShapeKind::Triangle | ShapeKind::IndexedTriangle => {
+                let corners = |&number| written_corners(run, &lists.files, stretch.entry(number));
+                let triangles: Vec<_> = numbers.iter().map(corners).collect();
+                for (index, corners) in triangles.iter().enumerate() {
+                    let slot = self.bake_triangle(corners, &place(index));
+                    self.slots.push(slot);
+                }
+            }
+            ShapeKind::Torus | ShapeKind::Open => {
                 for (index, &number) in numbers.iter().enumerate() {
                     let shape = written_shape(run, &lists.files, stretch.entry(number));
                     let slot = self.bake_other(&shape, &place(index));
@@ -198,26 +207,18 @@ impl Baked {
         }
     }
 
-    /// A triangle, or a shape of a rare kind.
-    fn bake_other(&mut self, shape: &Shape, place: &Place<'_>) -> Slot {
-        match shape {
-            Shape::Triangle(triangle) => {
-                let corners = triangle.vertices().map(|v| place.world_from_object.transform_point3(v));
-                if let Some(frame) = place.culls {
-                    self.culls.put_triangle(frame, self.slots.len(), &corners);
-                }
-                put(&mut self.triangles, Form::Triangle, corners)
-            }
-            Shape::Sphere(_)
-            | Shape::Cuboid(_)
-            | Shape::Cylinder(_)
-            | Shape::Cone(_)
-            | Shape::Torus(_)
-            | Shape::Open(_) => {
-                self.cull_box(place, |matrix| shape.world_bounds(matrix));
-                put(&mut self.framed_others, Form::FramedOther, *shape)
-            }
+    fn bake_triangle(&mut self, corners: &[Vec3; 3], place: &Place<'_>) -> Slot {
+        let corners = corners.map(|corner| place.world_from_object.transform_point3(corner));
+        if let Some(frame) = place.culls {
+            self.culls.put_triangle(frame, self.slots.len(), &corners);
         }
+        put(&mut self.triangles, Form::Triangle, corners)
+    }
+
+    /// A shape of a rare kind.
+    fn bake_other(&mut self, shape: &Shape, place: &Place<'_>) -> Slot {
+        self.cull_box(place, |matrix| shape.world_bounds(matrix));
+        put(&mut self.framed_others, Form::FramedOther, *shape)
     }
 
     fn cull_box(&mut self, place: &Place<'_>, bounds: impl Fn(&Affine) -> Aabb) {
