@@ -98,6 +98,9 @@ use clap::Parser;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+#[global_allocator]
+static ALLOCATOR: dotray_memory::HugePages = dotray_memory::HugePages;
+
 fn main() -> ExitCode {
     let typed: Vec<OsString> = std::env::args_os().collect();
     if let Some(message) = args::forgotten_command(&typed) {

@@ -33,6 +33,9 @@ mod solids;
 
 use pyo3::prelude::*;
 
+#[global_allocator]
+static ALLOCATOR: dotray_memory::HugePages = dotray_memory::HugePages;
+
 /// What the package `dotray` is made of.
 #[pymodule]
 mod _dotray {

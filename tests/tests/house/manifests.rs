@@ -2,7 +2,7 @@
 
 use super::rust::root;
 
-const FLOORS: [&str; 7] = [
+const FLOORS: [&str; 8] = [
     "dotray-geometry",
     "dotray-image",
     "dotray-accel",
@@ -10,8 +10,10 @@ const FLOORS: [&str; 7] = [
     "dotray-render",
     "dotray-grade",
     "dotray-lsp",
+    // Last, so that only programs use it.
+    "dotray-memory",
 ];
-const EVERYTHING: [&str; 8] = [
+const EVERYTHING: [&str; 9] = [
     "dotray-geometry",
     "dotray-image",
     "dotray-accel",
@@ -19,13 +21,14 @@ const EVERYTHING: [&str; 8] = [
     "dotray-render",
     "dotray-grade",
     "dotray-lsp",
+    "dotray-memory",
     "dotray",
 ];
 
 /// Which members of the workspace a member may use; a member that is not here must be added with care.
 fn allowed(member: &str) -> Option<&'static [&'static str]> {
     Some(match member {
-        "dotray-geometry" | "dotray-image" => &[],
+        "dotray-geometry" | "dotray-image" | "dotray-memory" => &[],
         "dotray-accel" | "dotray-scene" => &FLOORS[..1],
         "dotray-render" => &FLOORS[..4],
         "dotray-grade" => &FLOORS[..5],

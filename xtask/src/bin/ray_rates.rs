@@ -2,6 +2,9 @@
 
 use std::process::ExitCode;
 
+#[global_allocator]
+static ALLOCATOR: dotray_memory::HugePages = dotray_memory::HugePages;
+
 fn main() -> ExitCode {
     xtask::ended(xtask::rates::ray_rates(&xtask::arguments()))
 }
