@@ -77,7 +77,9 @@ def with_cable(folder):
         files = stack.enter_context(tempfile.TemporaryDirectory(prefix="ray", dir="/tmp", ignore_cleanup_errors=True))
         head = ["--head", "--node-ip-address=10.77.0.1", "--port=6379", f"--temp-dir={files}"]
         stack.enter_context(Process(*start, *head, "--num-cpus=0", "--include-dashboard=false"))
-        worker = [*start, f"--address={here}", "--node-ip-address=HOST", "--num-cpus=1"]
+        # The hosts share one disk, and in one folder two that start at once would take the same names of sockets.
+        own = f"--temp-dir={files}/HOST"
+        worker = [*start, f"--address={here}", "--node-ip-address=HOST", "--num-cpus=1", own]
         cables = [network.add_host(stack, worker)[1] for _ in range(2)]
         connect(ray, here)
         executor = cluster.RayExecutor()
