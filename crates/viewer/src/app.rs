@@ -18,6 +18,9 @@ use web_time::Instant;
 /// How long a key is held before it leads the camera.
 const HELD: Duration = Duration::from_millis(120);
 
+/// How long after a hand has moved over the view it is told what lies there.
+const LOOK: Duration = Duration::from_millis(250);
+
 /// See the module.
 pub struct App {
     state: State,
@@ -45,9 +48,15 @@ impl App {
     /// The application in its window.
     pub fn new(creation: &CreationContext<'_>, start: &Start) -> Self {
         let ctx = creation.egui_ctx.clone();
+        let later = ctx.clone();
+        let nudge = Arc::new(move || later.request_repaint_after(LOOK));
         let wake: crate::link::Wake = Arc::new(move || ctx.request_repaint());
-        let mut state = State::new(Link::new(wake.clone()));
+        let mut state = State::new(Link::new(wake.clone(), nudge));
         state.raster = creation.wgpu_render_state.as_ref().map(Raster::new);
+        if state.raster.as_ref().is_some_and(Raster::is_software) {
+            // Each step of what fades or slides is a frame.
+            creation.egui_ctx.all_styles_mut(|style| style.animation_time = 0.0);
+        }
         state.mode = if start.traced { Mode::Traced } else { Mode::Preview };
         state.trace_at_rest = start.trace_at_rest;
         let mut inbox = Inbox::new(wake);

@@ -1,12 +1,14 @@
 //! The rasteriser: a scene's buffers on the GPU, drawn into a picture of its own when the view changes, not when the
-//! window is drawn. A driver in software draws a scene of very many shapes as a draft first, and all of them part by
-//! part once the view rests, so that the window never waits.
+//! window is drawn. A driver in software draws a scene of very many shapes as a draft first, with fewer pixels where that
+//! is slow all the same, and all of them part by part once the view rests, so that the window never waits.
+
+mod held;
+
+mod pace;
 
 mod pipelines;
 
 mod sight;
-
-mod held;
 
 use crate::hidden::Hidden;
 use crate::pack::Packed;
@@ -23,6 +25,7 @@ use eframe::wgpu;
 use egui_wgpu::RenderState;
 use held::HeldShapes;
 use held::vertex_buffer;
+use pace::Pace;
 use pipelines::Pipelines;
 use sight::Sight;
 use std::ops::Range;
@@ -63,8 +66,8 @@ pub struct Raster {
     target: Option<Target>,
     /// What drafts are drawn into.
     rough: Option<Target>,
-    /// Whether many shapes take this driver long.
-    slow: bool,
+    /// How a driver draws moves that takes long for many shapes or pixels.
+    pace: Option<Pace>,
     /// How many things of the picture are drawn; `None` where it is finished.
     drawn: Option<u64>,
     /// How many are drawn at a time, and when that was done last.
@@ -112,11 +115,16 @@ impl Raster {
             lines: None,
             target: None,
             rough: None,
-            slow: state.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+            pace: (state.adapter.get_info().device_type == wgpu::DeviceType::Cpu).then(Pace::default),
             drawn: None,
             portion: PORTIONS.end,
             last_portion: None,
         }
+    }
+
+    /// Whether the driver draws by software.
+    pub fn is_software(&self) -> bool {
+        self.pace.is_some()
     }
 
     /// The device, the interface and the driver that draw, as people read them.
@@ -155,7 +163,7 @@ impl Raster {
         self.loaded = Some(Loaded {
             frame: packed.frame,
             shapes: HeldShapes::new(device, packed),
-            draft: draft.filter(|_| self.slow).map(|draft| HeldShapes::new(device, draft)),
+            draft: draft.filter(|_| self.pace.is_some()).map(|draft| HeldShapes::new(device, draft)),
             pictures,
             places,
             place_table,
@@ -208,7 +216,7 @@ impl Raster {
     pub fn draw(&mut self, camera: &Camera, size: [u32; 2], lines_only: bool) -> Option<egui::TextureId> {
         let most = self.state.device.limits().max_texture_dimension_2d;
         let size = size.map(|edge| edge.clamp(1, most));
-        fit(&self.state, &mut self.target, size);
+        fit(&self.state, &mut self.target, size, wgpu::FilterMode::Nearest);
         let loaded = self.loaded.as_mut()?;
         let uniforms = uniforms(loaded, camera, size);
         let sight = Sight::new(uniforms.eye, uniforms.right, uniforms.up, uniforms.ahead);
@@ -220,17 +228,22 @@ impl Raster {
         if lines_only {
             self.lines.as_ref()?;
             self.paint(self.target.as_ref()?, None, Some(wgpu::Color::TRANSPARENT), true);
-        } else if let Some(draft) = &loaded.draft {
-            fit(&self.state, &mut self.rough, size.map(|edge| edge.div_ceil(2)));
-            let rough = self.rough.as_ref()?;
-            self.paint(rough, Some((draft, 0..draft.count())), Some(loaded.clear()), true);
-            self.drawn = Some(0);
-            return Some(rough.id);
-        } else {
-            let all = 0..loaded.shapes.count();
-            self.paint(self.target.as_ref()?, Some((&loaded.shapes, all)), Some(loaded.clear()), true);
+            return self.target.as_ref().map(|target| target.id);
         }
-        self.target.as_ref().map(|target| target.id)
+        let coarseness = self.pace.as_mut().map_or(1, |pace| pace.next(Instant::now()));
+        if coarseness == 1 && loaded.draft.is_none() {
+            let all = 0..loaded.shapes.count();
+            let target = self.target.as_ref()?;
+            self.paint(target, Some((&loaded.shapes, all)), Some(loaded.clear()), true);
+            return Some(target.id);
+        }
+        let shapes = loaded.draft.as_ref().unwrap_or(&loaded.shapes);
+        let edges = size.map(|edge| edge.div_ceil(coarseness.max(2)));
+        fit(&self.state, &mut self.rough, edges, wgpu::FilterMode::Linear);
+        let rough = self.rough.as_ref()?;
+        self.paint(rough, Some((shapes, 0..shapes.count())), Some(loaded.clear()), true);
+        self.drawn = Some(0);
+        Some(rough.id)
     }
 
     /// How many of the scene's things were drawn last, or are to be: those far off the screen are not.
@@ -417,8 +430,8 @@ impl Loaded {
     }
 }
 
-/// Makes a target this large.
-fn fit(state: &RenderState, target: &mut Option<Target>, size: [u32; 2]) {
+/// Makes a target this large, whose pixels are shown so where they are larger than the screen's.
+fn fit(state: &RenderState, target: &mut Option<Target>, size: [u32; 2], filter: wgpu::FilterMode) {
     if target.as_ref().is_some_and(|target| target.size == size) {
         return;
     }
@@ -442,7 +455,7 @@ fn fit(state: &RenderState, target: &mut Option<Target>, size: [u32; 2]) {
     if let Some(old) = target.take() {
         renderer.free_texture(&old.id);
     }
-    let id = renderer.register_native_texture(&state.device, &color, wgpu::FilterMode::Nearest);
+    let id = renderer.register_native_texture(&state.device, &color, filter);
     *target = Some(Target { size, color, depth, id });
 }
 

@@ -51,6 +51,13 @@ pub enum News {
     Reply(Reply),
 }
 
+impl News {
+    /// Whether it can wait until the hand rests: frames that are drawn by software are dear.
+    fn is_idle(&self) -> bool {
+        matches!(self, Self::Reply(Reply::Seen(_)))
+    }
+}
+
 /// Wakes the screen.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
@@ -68,14 +75,24 @@ struct Asked {
 struct Teller {
     news: mpsc::Sender<News>,
     wake: Wake,
+    /// Wakes it soon.
+    nudge: Wake,
     last_asked: Arc<AtomicU64>,
 }
 
 impl Teller {
     fn tell(&self, news: News) {
         // Nobody listens where the window is closed.
+        let is_idle = news.is_idle();
         let _ = self.news.send(news);
-        (self.wake)();
+        if !desk::IN_FRAMES {
+            self.wake_for(is_idle);
+        }
+    }
+
+    /// Has the screen see news; idle ones soon.
+    fn wake_for(&self, is_idle: bool) {
+        if is_idle { (self.nudge)() } else { (self.wake)() }
     }
 
     fn is_current(&self, asked: &Asked) -> bool {
@@ -137,18 +154,19 @@ pub struct Link {
 }
 
 impl Link {
-    /// Starts the tracer.
-    pub fn new(wake: Wake) -> Self {
+    /// Starts the tracer. `nudge` wakes the screen soon.
+    pub fn new(wake: Wake, nudge: Wake) -> Self {
         let (sender, news) = mpsc::channel();
-        let teller = Teller { news: sender, wake, last_asked: Arc::default() };
+        let teller = Teller { news: sender, wake, nudge, last_asked: Arc::default() };
         let desk = desk::Desk::new(teller.clone());
         Self { news, teller, desk }
     }
 
     /// Tells the tracer something.
     pub fn send(&self, command: Command) {
+        let is_idle = matches!(command, Command::Look(..));
         self.desk.send(command);
-        (self.teller.wake)();
+        self.teller.wake_for(is_idle);
     }
 
     /// Reads a scene for the screen and the tracer. A first one is shown even if its textures are faulty; where there

@@ -7,10 +7,10 @@ use rayview::app::Start;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Shows a scene in a window: rasterised at once, then traced.
 #[global_allocator]
 static ALLOCATOR: dotray_memory::HugePages = dotray_memory::HugePages;
 
+/// Shows a scene in a window: rasterised at once, then traced.
 #[derive(Debug, Parser)]
 #[command(name = "rayview", version, about)]
 struct Args {

@@ -330,6 +330,12 @@ impl State {
         }
     }
 
+    /// Whether a traced picture will soon hide all that is drawn of the scene.
+    pub fn is_being_traced(&self) -> bool {
+        let of_all = |traced: &Traced| traced.image.is_none() && traced.request.options.crop.is_none();
+        self.traced.as_ref().is_some_and(of_all)
+    }
+
     /// What is to be traced now.
     fn request(&mut self, with_region: bool) -> Option<Request> {
         self.serial += 1;

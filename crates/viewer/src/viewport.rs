@@ -1,6 +1,5 @@
 //! The view itself: what is drawn in it, and what a hand does there.
 
-use crate::gpu::Raster;
 use crate::panels::Panels;
 use crate::state::Mode;
 use crate::state::REST;
@@ -159,11 +158,16 @@ impl Viewport {
         {
             self.drawn = raster.draw(&camera, state.size, whole);
             (state.stale, self.over_traced) = (false, whole);
-        } else if let Some(raster) = state.raster.as_mut().filter(|_| state.moved.elapsed() >= STILL) {
-            self.drawn = raster.go_on().or(self.drawn);
         }
-        if state.raster.as_ref().is_some_and(Raster::is_unfinished) {
-            ui.ctx().request_repaint();
+        // Nobody needs the whole of what a traced picture hides soon.
+        let going_on = !state.is_being_traced();
+        if let Some(raster) = state.raster.as_mut().filter(|raster| going_on && raster.is_unfinished()) {
+            if state.moved.elapsed() >= STILL {
+                self.drawn = raster.go_on().or(self.drawn);
+            }
+            if raster.is_unfinished() {
+                ui.ctx().request_repaint();
+            }
         }
         let painter = ui.painter_at(rect);
         let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));

@@ -343,6 +343,27 @@ fn what_is_off_the_screen_is_left_out() {
     }
 }
 
+/// Where pictures of a move come slowly, a driver in software draws them coarsely.
+#[test]
+fn slow_moves_are_drawn_coarsely_and_the_whole_comes_after_them() {
+    let Some(mut raster) = raster() else { return };
+    let opened = opened(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/slides.ray"));
+    load(&mut raster, &opened);
+    let whole = drawn(&mut raster, &opened);
+    let mut elsewhere = opened.document.camera;
+    elsewhere.position.y += 0.5;
+    for camera in [elsewhere, elsewhere, opened.document.camera] {
+        std::thread::sleep(std::time::Duration::from_millis(150));
+        raster.draw(&camera, [WIDTH, HEIGHT], false).expect("a picture");
+    }
+    assert_eq!(raster.is_unfinished(), raster.is_software());
+    while raster.is_unfinished() {
+        raster.go_on();
+    }
+    let (_, pixels) = raster.pixels().expect("pixels");
+    assert!(pixels.chunks_exact(4).flat_map(|pixel| pixel.iter().take(3).copied()).eq(whole));
+}
+
 /// A scene of so many shapes that a driver in software begins with a draft.
 #[test]
 fn a_draft_looks_alike_and_the_whole_comes_after_it() {

@@ -12,6 +12,9 @@ use crate::host::Page;
 use port::Port;
 use slices::Slices;
 
+/// News are told in a frame, which takes them.
+pub const IN_FRAMES: bool = true;
+
 enum Tracer {
     Elsewhere(Port),
     Here(Slices),

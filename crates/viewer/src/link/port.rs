@@ -2,10 +2,10 @@
 //! Messages are bytes; one that is `null` says that nobody is there any more.
 //!
 //! What a hand does is known to the screen with its next frame only, which may be late where the tracers want all
-//! cores. It is therefore heard here as it comes, and holds the tracer until that frame.
+//! cores. It is therefore heard here as it comes, and holds the tracer until that frame is drawn.
 //!
 //! Turns of the wheel come with a frame all the same. Tried and dropped: a slider on the page, for which Chromium hands
-//! touches out at once; one tracer on two cores. Half of the turns still waited for 190 to 260 ms.
+//! touches out at once; one tracer on two cores.
 
 use super::Asked;
 use super::News;
@@ -40,8 +40,8 @@ use wasm_bindgen::JsCast;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::closure::Closure;
 
-/// Messages as they came.
-type Arrived = Rc<RefCell<VecDeque<Option<Vec<u8>>>>>;
+/// Messages as they came; `None` says that nobody is there any more.
+type Arrived = Rc<RefCell<VecDeque<Option<Result<Tell, String>>>>>;
 
 /// Where the tracer takes messages.
 #[derive(Clone)]
@@ -72,13 +72,20 @@ impl Slot {
 /// What may move the camera. The first one comes at once where a browser has it, all other moves with its next frame.
 const DEEDS: [&str; 5] = ["pointerrawupdate", "pointermove", "touchmove", "wheel", "keydown"];
 
+/// Whether a hand holds the tracer.
+#[derive(Default)]
+struct Hold {
+    held: Cell<bool>,
+    /// How often a hand did something while it was held.
+    deeds: Cell<u64>,
+}
+
 /// See the module.
 pub struct Port {
     slot: Slot,
     /// The picture that is being traced, by its number.
     traced: Rc<Cell<Option<u64>>>,
-    /// Whether a hand holds the tracer.
-    held: Rc<Cell<bool>>,
+    hold: Rc<Hold>,
     arrived: Arrived,
     /// What the scene's files are to be stored as.
     outgoing: Arc<Mutex<Vec<Ask>>>,
@@ -99,21 +106,23 @@ impl Port {
         let is_own = get(&object, "threads").is_some();
         let post = get(&object, "postMessage")?.dyn_into().ok()?;
         let arrived = Arrived::default();
-        let (queue, wake) = (arrived.clone(), teller.wake.clone());
+        let (queue, of_page) = (arrived.clone(), teller.clone());
         let listener = Closure::new(move |event: JsValue| {
-            let data = get(&event, "data");
-            queue.borrow_mut().push_back(data.map(|data| js_sys::Uint8Array::new(&data).to_vec()));
-            wake();
+            let bytes = get(&event, "data").map(|data| js_sys::Uint8Array::new(&data).to_vec());
+            let tell = bytes.map(|bytes| if packing { unpacked(&bytes) } else { Ok(bytes) });
+            let tell = tell.map(|bytes| bytes.and_then(|bytes| message(&bytes)));
+            of_page.wake_for(matches!(tell, Some(Ok(Tell::Seen(_)))));
+            queue.borrow_mut().push_back(tell);
         });
         let taken = js_sys::Reflect::set(&object, &"onmessage".into(), listener.as_ref());
         taken.ok()?;
         let slot = Slot { object, post, packing, is_own };
-        let (traced, held) = (Rc::new(Cell::new(None)), Rc::new(Cell::new(false)));
-        let brake = brake(page, &slot, &traced, &held, teller);
+        let (traced, hold) = (Rc::new(Cell::new(None)), Rc::new(Hold::default()));
+        let brake = brake(page, &slot, &traced, &hold, teller);
         Some(Self {
             slot,
             traced,
-            held,
+            hold,
             arrived,
             outgoing: Arc::default(),
             before: Vec::new(),
@@ -126,11 +135,19 @@ impl Port {
         self.slot.packing
     }
 
-    /// The screen has seen what the hand did.
+    /// The screen has seen what the hand did. Where frames are drawn by software, the one that shows it has the cores
+    /// for itself.
     pub fn go_on(&self) {
-        if self.held.replace(false) {
-            self.slot.ask(&Ask::GoOn);
+        if !self.hold.held.get() {
+            return;
         }
+        let (slot, hold, seen) = (self.slot.clone(), self.hold.clone(), self.hold.deeds.get());
+        after_a_frame(move || {
+            // What a hand did since has a frame of its own.
+            if hold.deeds.get() == seen && hold.held.replace(false) {
+                slot.ask(&Ask::GoOn);
+            }
+        });
     }
 
     pub fn send(&self, command: Command) {
@@ -174,15 +191,11 @@ impl Port {
         let outgoing = std::mem::take(&mut *self.outgoing.lock().unwrap_or_else(PoisonError::into_inner));
         outgoing.iter().for_each(|ask| self.slot.ask(ask));
         let arrived = std::mem::take(&mut *self.arrived.borrow_mut());
-        for bytes in arrived {
-            let Some(bytes) = bytes else {
-                teller.tell(News::Notice("the tracer is gone: load the page again".to_owned()));
-                continue;
-            };
-            let whole = if self.slot.packing { unpacked(&bytes) } else { Ok(bytes) };
-            match whole.and_then(|bytes| message(&bytes)) {
-                Ok(tell) => self.take(tell, teller),
-                Err(fault) => teller.tell(News::Notice(fault)),
+        for tell in arrived {
+            match tell {
+                Some(Ok(tell)) => self.take(tell, teller),
+                Some(Err(fault)) => teller.tell(News::Notice(fault)),
+                None => teller.tell(News::Notice("the tracer is gone: load the page again".to_owned())),
             }
         }
     }
@@ -203,7 +216,8 @@ impl Port {
             // What tracers tell each other goes to no screen.
             Tell::Prepared(..) | Tell::Failed(..) | Tell::Tracers(..) | Tell::Part(_) => {}
             Tell::Picture(sent) => {
-                shown(self.slot.clone());
+                let slot = self.slot.clone();
+                after_a_frame(move || slot.ask(&Ask::Shown));
                 if sent.film.is_some() && self.traced.get() == Some(sent.serial) {
                     self.traced.set(None);
                 }
@@ -233,16 +247,19 @@ fn brake(
     page: &Page,
     slot: &Slot,
     traced: &Rc<Cell<Option<u64>>>,
-    held: &Rc<Cell<bool>>,
+    hold: &Rc<Hold>,
     teller: &Teller,
 ) -> Closure<dyn FnMut(JsValue)> {
-    let (slot, traced, held, wake) = (slot.clone(), traced.clone(), held.clone(), teller.wake.clone());
+    let (slot, traced, hold, wake) = (slot.clone(), traced.clone(), hold.clone(), teller.wake.clone());
     let listener: Closure<dyn FnMut(JsValue)> = Closure::new(move |event: JsValue| {
         // A pointer that only hovers moves nothing.
         let hovers = get(&event, "buttons").and_then(|buttons| buttons.as_f64()) == Some(0.0);
         let is_wheel = get(&event, "deltaY").is_some();
-        if traced.get().is_some() && (is_wheel || !hovers) && !held.replace(true) {
-            slot.ask(&Ask::Hold);
+        if traced.get().is_some() && (is_wheel || !hovers) {
+            hold.deeds.set(hold.deeds.get() + 1);
+            if !hold.held.replace(true) {
+                slot.ask(&Ask::Hold);
+            }
             wake();
         }
     });
@@ -257,14 +274,13 @@ fn brake(
     listener
 }
 
-/// Asks for another picture once this one has been drawn: the browser's next frame but one comes no sooner.
-fn shown(slot: Slot) {
+/// Does something once this frame has been drawn: the browser's next frame but one comes no sooner.
+fn after_a_frame(deed: impl FnOnce() + 'static) {
     let call = |call: JsValue| {
         let later = get(&js_sys::global(), "requestAnimationFrame")?.dyn_into::<js_sys::Function>().ok()?;
         later.call1(&JsValue::NULL, &call).ok()
     };
-    let ask = move || slot.ask(&Ask::Shown);
-    let next = move || drop(call(Closure::once_into_js(ask)));
+    let next = move || drop(call(Closure::once_into_js(deed)));
     call(Closure::once_into_js(next));
 }
 

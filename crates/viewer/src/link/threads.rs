@@ -11,6 +11,9 @@ use crate::letters::Receiver;
 use crate::letters::Sender;
 use crate::letters::letters;
 
+/// Threads tell between two frames.
+pub const IN_FRAMES: bool = false;
+
 /// See the module.
 pub struct Desk {
     commands: Sender<Command>,
