@@ -5,7 +5,7 @@
 //! cores. It is therefore heard here as it comes, and holds the tracer until that frame is drawn.
 //!
 //! Turns of the wheel come with a frame all the same. Tried and dropped: a slider on the page, for which Chromium hands
-//! touches out at once; one tracer on two cores.
+//! touches out at once; one tracer on two cores; tracers that are held for pointers that only hover, too.
 
 use super::Asked;
 use super::News;
