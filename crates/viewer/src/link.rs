@@ -82,8 +82,8 @@ struct Teller {
 
 impl Teller {
     fn tell(&self, news: News) {
-        // Nobody listens where the window is closed.
         let is_idle = news.is_idle();
+        // Nobody listens where the window is closed.
         let _ = self.news.send(news);
         if !desk::IN_FRAMES {
             self.wake_for(is_idle);
