@@ -1,6 +1,6 @@
 //! The rasteriser: a scene's buffers on the GPU, drawn into a picture of its own when the view changes, not when the
-//! window is drawn. A driver in software draws a scene of very many shapes as a draft first, with fewer pixels where that
-//! is slow all the same, and all of them part by part once the view rests, so that the window never waits.
+//! window is drawn. A driver in software draws a scene of very many shapes as a draft first, with fewer pixels where
+//! that is slow all the same, and all of them part by part once the view rests, so that the window never waits.
 
 mod held;
 
