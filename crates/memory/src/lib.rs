@@ -12,6 +12,7 @@ use std::alloc::Layout;
 use std::alloc::System;
 
 /// Pieces of memory of at least so many bytes are asked for in huge pages: a few of them have room.
+/// Tried and dropped: 2 MiB, which changed nothing for scenes of 10^5 shapes.
 const LARGE: usize = 8 << 20;
 
 /// The system's allocator, with huge pages for large pieces.
