@@ -30,7 +30,19 @@ pub struct App {
     /// Since when keys that lead the camera are held, and no other.
     held_since: Option<Instant>,
     #[cfg(target_arch = "wasm32")]
+    page: OnPage,
+}
+
+/// What only a page needs.
+#[cfg(target_arch = "wasm32")]
+#[derive(Default)]
+struct OnPage {
     report: crate::report::Report,
+    hover: crate::hover::Hover,
+    /// Whether the last frame has been put off.
+    is_put_off: bool,
+    /// Whether there has been news since.
+    woken: Arc<std::sync::atomic::AtomicBool>,
 }
 
 /// What is asked for at the start.
@@ -50,10 +62,27 @@ impl App {
         let ctx = creation.egui_ctx.clone();
         let later = ctx.clone();
         let nudge = Arc::new(move || later.request_repaint_after(LOOK));
-        let wake: crate::link::Wake = Arc::new(move || ctx.request_repaint());
+        let raster = creation.wgpu_render_state.as_ref().map(Raster::new);
+        let is_software = raster.as_ref().is_some_and(Raster::is_software);
+        #[cfg(target_arch = "wasm32")]
+        let (page, woken) = {
+            let page = OnPage::default();
+            let woken = page.woken.clone();
+            (page, woken)
+        };
+        let wake: crate::link::Wake = Arc::new(move || {
+            #[cfg(target_arch = "wasm32")]
+            woken.store(true, std::sync::atomic::Ordering::Relaxed);
+            if is_software {
+                // A request without delay is one for two frames.
+                ctx.request_repaint_after(Duration::from_nanos(1));
+            } else {
+                ctx.request_repaint();
+            }
+        });
         let mut state = State::new(Link::new(wake.clone(), nudge));
-        state.raster = creation.wgpu_render_state.as_ref().map(Raster::new);
-        if state.raster.as_ref().is_some_and(Raster::is_software) {
+        state.raster = raster;
+        if is_software {
             // Each step of what fades or slides is a frame.
             creation.egui_ctx.all_styles_mut(|style| style.animation_time = 0.0);
         }
@@ -72,7 +101,7 @@ impl App {
             inbox,
             held_since: None,
             #[cfg(target_arch = "wasm32")]
-            report: crate::report::Report::default(),
+            page,
         }
     }
 
@@ -190,6 +219,38 @@ impl eframe::App for App {
         self.viewport.show(ui, &mut self.state, &mut self.panels);
         self.state.link.go_on();
         #[cfg(target_arch = "wasm32")]
-        self.report.tell(&self.state, self.viewport.rect());
+        self.page.report.tell(&self.state, self.viewport.rect());
+    }
+
+    /// Puts a frame off as frames of a page that is hidden are: what it was to show is kept for the next.
+    #[cfg(target_arch = "wasm32")]
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        let woken = self.page.woken.swap(false, std::sync::atomic::Ordering::Relaxed);
+        let Some(raster) = self.state.raster.as_ref().filter(|raster| raster.is_software()) else { return };
+        let line = ctx.options(|options| options.input_options.line_scroll_speed);
+        input.events = crate::hover::unspread(std::mem::take(&mut input.events), line);
+        let is_wanted = woken || raster.is_unfinished() && !self.state.is_being_traced();
+        // Where a frame has been put off, the next has been requested by this very application.
+        let is_asked_for = !self.page.is_put_off && ctx.has_requested_repaint();
+        let (latest, is_down) = ctx.input(|input| (input.pointer.latest_pos(), input.pointer.any_down()));
+        let view = self.viewport.rect().filter(|_| !self.panels.marking && !is_down && !is_asked_for);
+        let is_over_view = |at: egui::Pos2| {
+            view.is_some_and(|view| view.contains(at))
+                && ctx.layer_id_at(at).is_none_or(|layer| layer.order == egui::Order::Background)
+        };
+        let was_over_view = latest.is_some_and(is_over_view);
+        let over_view = |at| was_over_view && is_over_view(at);
+        let can_wait = self.page.hover.can_wait(&input.events, over_view, is_wanted, Instant::now());
+        self.page.is_put_off = can_wait;
+        if can_wait {
+            input.viewports.entry(egui::ViewportId::ROOT).or_default().occluded = Some(true);
+        }
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+        if self.page.is_put_off {
+            ctx.request_repaint_after(LOOK);
+        }
     }
 }

@@ -65,6 +65,10 @@ pub mod panels;
 #[cfg(feature = "screen")]
 pub mod viewport;
 
+// A window's frames are its own thread's: nothing waits behind them.
+#[cfg(all(feature = "screen", any(test, target_arch = "wasm32")))]
+pub mod hover;
+
 #[cfg(all(feature = "screen", target_arch = "wasm32"))]
 pub mod report;
 
