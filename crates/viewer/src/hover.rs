@@ -165,8 +165,9 @@ mod tests {
             };
             let events = unspread(vec![turn(unit, y), Event::Copy], line);
             assert_eq!(events.last(), Some(&Event::Copy));
-            assert!((turned(events) - if y < -100.0 { y } else { y * line }).abs() < 0.01);
-            assert!(turned(vec![turn(unit, y)]) > y / 2.0, "without it, a part only");
+            let points = if unit == MouseWheelUnit::Line { y * line } else { y };
+            assert!((turned(events) - points).abs() < 0.01);
+            assert!(turned(vec![turn(unit, y)]) > points / 2.0, "without it, a part only");
         }
     }
 }

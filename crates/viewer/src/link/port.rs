@@ -72,10 +72,20 @@ impl Slot {
 /// What may move the camera. The first one comes at once where a browser has it, all other moves with its next frame.
 const DEEDS: [&str; 5] = ["pointerrawupdate", "pointermove", "touchmove", "wheel", "keydown"];
 
-/// Whether a hand holds the tracer.
+/// What holds the tracer.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Holder {
+    #[default]
+    Nothing,
+    /// A frame that is drawn.
+    Frame,
+    /// A hand that has done something.
+    Hand,
+}
+
 #[derive(Default)]
 struct Hold {
-    held: Cell<bool>,
+    by: Cell<Holder>,
     /// How often a hand did something while it was held.
     deeds: Cell<u64>,
 }
@@ -135,16 +145,20 @@ impl Port {
         self.slot.packing
     }
 
-    /// The screen has seen what the hand did. Where frames are drawn by software, the one that shows it has the cores
-    /// for itself.
-    pub fn go_on(&self) {
-        if !self.hold.held.get() {
-            return;
+    /// The screen has seen what the hand did. Frames that are slow, since software draws them, have the cores for
+    /// themselves: what a hand does next is heard after them.
+    pub fn go_on(&self, is_slow: bool) {
+        if self.hold.by.get() == Holder::Nothing {
+            if !is_slow || self.traced.get().is_none() {
+                return;
+            }
+            self.hold.by.set(Holder::Frame);
+            self.slot.ask(&Ask::Hold);
         }
         let (slot, hold, seen) = (self.slot.clone(), self.hold.clone(), self.hold.deeds.get());
         after_a_frame(move || {
             // What a hand did since has a frame of its own.
-            if hold.deeds.get() == seen && hold.held.replace(false) {
+            if hold.deeds.get() == seen && hold.by.replace(Holder::Nothing) != Holder::Nothing {
                 slot.ask(&Ask::GoOn);
             }
         });
@@ -257,7 +271,7 @@ fn brake(
         let is_wheel = get(&event, "deltaY").is_some();
         if traced.get().is_some() && (is_wheel || !hovers) {
             hold.deeds.set(hold.deeds.get() + 1);
-            if !hold.held.replace(true) {
+            if hold.by.replace(Holder::Hand) != Holder::Hand {
                 slot.ask(&Ask::Hold);
             }
             wake();

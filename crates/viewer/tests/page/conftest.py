@@ -328,14 +328,13 @@ class Moves:
 
 
 def judge(moves, waits):
-    """Browsers hand turns of the wheel out with their next frame alone, which comes late where all draws by software:
-    after the two frames of a pointer that came to the place. And nobody can promise anything where other programs want
-    the cores."""
+    """Browsers hand turns of the wheel out with their next frame alone, which comes late where all is drawn by software
+    and a frame is under way. And nobody can promise anything where other programs want the cores."""
     every = [wait for name, each in waits.items() if name != "wheel" for wait in each]
     assert len(every) >= 30 and len(waits["wheel"]) >= 10
     if moves.others < 0.1:
         assert quantile(every, 0.95) <= 50, waits
-        assert quantile(waits["wheel"], 0.5) <= 200, waits
+        assert quantile(waits["wheel"], 0.5) <= 100, waits
     else:
         assert quantile(every, 0.5) < 500, waits
 
