@@ -40,10 +40,9 @@ impl Hover {
         is_wanted: bool,
         now: Instant,
     ) -> bool {
-        let hovers = |event: &Event| match event {
-            Event::PointerMoved(at) => is_over_view(*at),
-            Event::MouseMoved(_) => true,
-            _ => false,
+        let hovers = |event: &Event| {
+            matches!(event, Event::MouseMoved(_))
+                || matches!(event, Event::PointerMoved(at) if is_over_view(*at))
         };
         let is_quiet = |event: &Event| hovers(event) || matches!(event, Event::MouseWheel { .. });
         let within =
