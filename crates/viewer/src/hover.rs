@@ -1,8 +1,8 @@
 //! Frames that can wait: a hand that hovers over the view is told what lies there once it rests, and nothing else of
 //! the screen changes meanwhile.
 //!
-//! Each of its moves costs three frames otherwise, two of them for things to settle, and each turn of a wheel six, since
-//! it is spread over some of them. Where frames are drawn by software, what the hand does next waits behind them.
+//! Each of its moves costs three frames otherwise, two of them for things to settle, and each turn of a wheel six,
+//! since it is spread over some of them. Where frames are drawn by software, what the hand does next waits behind them.
 
 use eframe::egui::Event;
 use eframe::egui::MouseWheelUnit;

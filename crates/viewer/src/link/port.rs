@@ -4,9 +4,9 @@
 //! What a hand does is known to the screen with its next frame only, which may be late where the tracers want all
 //! cores. It is therefore heard here as it comes, and holds the tracer until that frame is drawn.
 //!
-//! Turns of the wheel come with a frame all the same: where frames are slow there are few of them (`hover.rs`), and each
-//! has the cores for itself. Tried and dropped: a slider on the page, for which Chromium hands touches out at once; one
-//! tracer on two cores.
+//! Turns of the wheel come with a frame all the same: where frames are slow there are few of them (`hover.rs`), and
+//! each has the cores for itself. Tried and dropped: a slider on the page, for which Chromium hands touches out at
+//! once; one tracer on two cores.
 
 use super::Asked;
 use super::News;
