@@ -89,6 +89,54 @@ def test_a_move_is_heard_soon(browser, request, server):
     viewer.close()
 
 
+# Counts the frames in which something is drawn.
+FRAMES = """
+    globalThis.frames_drawn = 0;
+    let drawn = false;
+    for (const name of ["drawElements", "drawElementsInstanced"]) {
+        const draw = WebGL2RenderingContext.prototype[name];
+        WebGL2RenderingContext.prototype[name] = function (...more) {
+            drawn = true;
+            return draw.apply(this, more);
+        };
+    }
+    const request = requestAnimationFrame.bind(globalThis);
+    globalThis.requestAnimationFrame = (call) => request((time) => {
+        drawn = false;
+        call(time);
+        frames_drawn += drawn;
+    });
+"""
+
+
+def test_what_a_hand_does_costs_few_frames_where_they_are_slow(browser, site):
+    viewer = Viewer(browser, site, prepare=lambda page: page.add_init_script(FRAMES))
+    viewer.drop(BOTH)
+    viewer.wait("data-prepared", "true")
+
+    def frames(deeds):
+        """How many frames there are from these deeds until all is still."""
+        viewer.page.evaluate("frames_drawn = 0")
+        deeds()
+        time.sleep(2)
+        return viewer.page.evaluate("frames_drawn")
+
+    def hover():
+        x, y = viewer.at(0.5, 0.5)
+        for step in range(12):
+            viewer.page.mouse.move(x + step, y)
+            time.sleep(0.05)
+
+    frames(hover)
+    # One when it rests, some for what is told of the place then; without waiting there are 17 and more.
+    assert 1 <= frames(hover) <= 6
+    camera = viewer.get("data-camera")
+    # Without waiting there are seven and more.
+    assert 1 <= frames(lambda: viewer.page.mouse.wheel(0, 120)) <= 5
+    assert viewer.get("data-camera") != camera
+    viewer.close()
+
+
 # A device of WebGPU that draws by software.
 WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--use-vulkan=swiftshader"]
 WEBGPU += ["--enable-features=Vulkan,WebGPU", "--disable-vulkan-surface"]
