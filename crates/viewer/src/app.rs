@@ -217,7 +217,7 @@ impl eframe::App for App {
         self.keys(&ctx);
         self.panels.show(ui, &mut self.state);
         self.viewport.show(ui, &mut self.state, &mut self.panels);
-        self.state.link.go_on(self.state.raster.as_ref().is_some_and(Raster::is_software));
+        self.state.link.go_on();
         #[cfg(target_arch = "wasm32")]
         self.page.report.tell(&self.state, self.viewport.rect());
     }

@@ -181,10 +181,9 @@ impl Link {
         self.desk.threads()
     }
 
-    /// Lets the tracer go on, which a page has held since a hand did something: the screen has seen it. Where frames
-    /// are slow, it is held for each until it is drawn.
-    pub fn go_on(&self, is_slow: bool) {
-        self.desk.go_on(is_slow);
+    /// Lets the tracer go on, which a page has held since a hand did something: the screen has seen it.
+    pub fn go_on(&self) {
+        self.desk.go_on();
     }
 
     /// What has come since the last time; on a page this does a slice of the work.

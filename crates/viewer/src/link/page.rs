@@ -46,9 +46,9 @@ impl Desk {
         }
     }
 
-    pub fn go_on(&self, is_slow: bool) {
+    pub fn go_on(&self) {
         match &self.tracer {
-            Tracer::Elsewhere(port) => port.go_on(is_slow),
+            Tracer::Elsewhere(port) => port.go_on(),
             // It traces between two frames of the screen alone.
             Tracer::Here(_) => {}
         }

@@ -4,9 +4,9 @@
 //! What a hand does is known to the screen with its next frame only, which may be late where the tracers want all
 //! cores. It is therefore heard here as it comes, and holds the tracer until that frame is drawn.
 //!
-//! Turns of the wheel come with a frame all the same: where frames are slow there are few of them (`hover.rs`), and
-//! each has the cores for itself. Tried and dropped: a slider on the page, for which Chromium hands touches out at
-//! once; one tracer on two cores.
+//! Turns of the wheel come with a frame all the same: where frames are slow there are few of them (`hover.rs`). Tried
+//! and dropped: a slider on the page, for which Chromium hands touches out at once; one tracer on two cores; tracers
+//! that are held for every frame, which gains little and loses the tiles under way.
 
 use super::Asked;
 use super::News;
@@ -73,20 +73,10 @@ impl Slot {
 /// What may move the camera. The first one comes at once where a browser has it, all other moves with its next frame.
 const DEEDS: [&str; 5] = ["pointerrawupdate", "pointermove", "touchmove", "wheel", "keydown"];
 
-/// What holds the tracer.
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
-enum Holder {
-    #[default]
-    Nothing,
-    /// A frame that is drawn.
-    Frame,
-    /// A hand that has done something.
-    Hand,
-}
-
+/// Whether a hand holds the tracer.
 #[derive(Default)]
 struct Hold {
-    by: Cell<Holder>,
+    held: Cell<bool>,
     /// How often a hand did something while it was held.
     deeds: Cell<u64>,
 }
@@ -146,20 +136,16 @@ impl Port {
         self.slot.packing
     }
 
-    /// The screen has seen what the hand did. Frames that are slow, since software draws them, have the cores for
-    /// themselves: what a hand does next is heard after them.
-    pub fn go_on(&self, is_slow: bool) {
-        if self.hold.by.get() == Holder::Nothing {
-            if !is_slow || self.traced.get().is_none() {
-                return;
-            }
-            self.hold.by.set(Holder::Frame);
-            self.slot.ask(&Ask::Hold);
+    /// The screen has seen what the hand did. Where frames are drawn by software, the one that shows it has the cores
+    /// for itself.
+    pub fn go_on(&self) {
+        if !self.hold.held.get() {
+            return;
         }
         let (slot, hold, seen) = (self.slot.clone(), self.hold.clone(), self.hold.deeds.get());
         after_a_frame(move || {
             // What a hand did since has a frame of its own.
-            if hold.deeds.get() == seen && hold.by.replace(Holder::Nothing) != Holder::Nothing {
+            if hold.deeds.get() == seen && hold.held.replace(false) {
                 slot.ask(&Ask::GoOn);
             }
         });
@@ -272,7 +258,7 @@ fn brake(
         let is_wheel = get(&event, "deltaY").is_some();
         if traced.get().is_some() && (is_wheel || !hovers) {
             hold.deeds.set(hold.deeds.get() + 1);
-            if hold.by.replace(Holder::Hand) != Holder::Hand {
+            if !hold.held.replace(true) {
                 slot.ask(&Ask::Hold);
             }
             wake();

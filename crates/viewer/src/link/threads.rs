@@ -37,7 +37,7 @@ impl Desk {
     }
 
     /// A window's frame comes right after what a hand does: nothing is held before.
-    pub fn go_on(&self, _: bool) {}
+    pub fn go_on(&self) {}
 
     pub fn open(&mut self, asked: Asked) {
         let (teller, commands) = (self.teller.clone(), self.commands.clone());
