@@ -36,6 +36,7 @@ pub struct Accelerator {
     items: u32,
     bounds: Aabb,
     structure: Structure,
+    is_far: bool,
 }
 
 /// What the five hold. A box tree and a BVH are walked alike.
@@ -57,10 +58,15 @@ pub struct Built {
     pub order: Option<Vec<u32>>,
 }
 
-/// Trees of as many nodes (3.5 MB), and the shapes in their leaves, do not fit the memory next to a processor. (Tried
-/// and dropped: 2^12. Random rays in meshes of 70,000 triangles took up to 30 % less time, but among 100,000 spheres or
-/// cylinders 5 to 15 % more.)
+/// Trees of as many nodes (3.5 MB), and the shapes in their leaves, do not fit the memory next to a processor.
 const FAR: usize = 1 << 14;
+
+/// Nor do smaller ones with the shapes in their leaves; but it helps to ask in advance only where a ray reads little of
+/// them, as in a mesh. (Among 100,000 spheres or cylinders, random rays took 5 to 15 % longer.)
+const RATHER_FAR: usize = 1 << 11;
+
+/// As many tests are expected of a ray that reads little.
+const FEW_TESTS: f64 = 12.0;
 
 impl Accelerator {
     /// Builds over `boxes`. The result does not depend on the number of threads.
@@ -73,7 +79,10 @@ impl Accelerator {
         let items = boxes.len();
         assert!(items <= MAX_ITEMS, "an accelerator holds at most {MAX_ITEMS} items");
         let bounds = union(boxes);
-        let structure = |structure| Self { kind, items, bounds, structure };
+        let structure = |structure| {
+            let is_far = is_far(&structure, kind, items);
+            Self { kind, items, bounds, structure, is_far }
+        };
         if items == 0 {
             return Built { accelerator: structure(Structure::Brute), order: None };
         }
@@ -135,7 +144,7 @@ impl Accelerator {
 
     /// Whether it, and what its leaves hold, is so large that walks wait for memory, and it helps to ask in advance.
     pub fn is_far(&self) -> bool {
-        matches!(&self.structure, Structure::Tree(tree) if ahead::HELPS && tree.nodes.len() >= FAR)
+        self.is_far
     }
 
     /// Every leaf that its walks show as a block: the first position and the count. Each position lies in one of them.
@@ -246,6 +255,14 @@ impl Accelerator {
             self.walk(level, queries, batch);
         }
     }
+}
+
+/// See [`Accelerator::is_far`].
+fn is_far(structure: &Structure, kind: Kind, items: u32) -> bool {
+    let Structure::Tree(tree) = structure else { return false };
+    let nodes = tree.nodes.len();
+    let reads_little = || tree.stats(kind, items).sah_cost <= FEW_TESTS;
+    ahead::HELPS && (nodes >= FAR || nodes >= RATHER_FAR && reads_little())
 }
 
 /// The box around all items.

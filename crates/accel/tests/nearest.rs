@@ -312,6 +312,22 @@ fn all_but_brute_force_save_ten_times_the_work() {
 }
 
 #[test]
+fn a_mesh_is_far_sooner_than_a_cloud() {
+    let count = 50_000;
+    let cloud = spheres(count, 2.0, 22);
+    // As many along a winding sheet, of which a ray meets little.
+    let mut sheet = spheres(count, 0.05, 22);
+    for sphere in &mut sheet.0 {
+        sphere.center.z = 0.5 + 0.2 * (7.0 * sphere.center.x).sin();
+    }
+    let is_far = |scene: &Scene<Sphere>| build(Kind::Bvh, scene, &[]).accelerator.is_far();
+    assert!(!is_far(&cloud));
+    assert!(is_far(&sheet) || !dotray_accel::ahead::HELPS);
+    sheet.0.truncate(count / 10);
+    assert!(!is_far(&sheet), "a small one is at hand");
+}
+
+#[test]
 fn rays_in_turn_do_what_each_does_alone() {
     let scene = spheres(500_000, 2.0, 19);
     let built = build(Kind::Bvh, &scene, &[]);

@@ -1,8 +1,9 @@
 //! The walk of rays that have nothing in common: several in turn, a step each, so that what one ray needs next comes
 //! from memory while the others walk.
 //!
-//! Random rays through a million triangles or spheres take 30 to 45 % less time so; those through a tree that is near
-//! take up to half more, which is why rays that start close together, and small trees, are walked ray by ray.
+//! Random rays through a million triangles or spheres take 30 to 45 % less time so, those through a mesh of 70,000
+//! triangles 10 to 20 %; those through a tree that is near take up to half more, which is why rays that start close
+//! together, and small trees, are walked ray by ray.
 
 use crate::batch::Batch;
 use crate::bvh::walk::SpreadRay;
