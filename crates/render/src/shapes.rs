@@ -107,8 +107,8 @@ impl Shapes {
         self.baked.expect(first, count);
     }
 
-    /// Asks for what the tests of a leaf's shapes in double precision read, where memory is far. (Tried and dropped: not
-    /// for shadow rays. In meshes they took 12 % longer.)
+    /// Asks for what the tests of a leaf's shapes in double precision read, where memory is far. (Tried and dropped:
+    /// not for shadow rays. In meshes they took 12 % longer.)
     #[inline(always)]
     pub(crate) fn expect_tests(&self, first: u32, count: u32) {
         if self.is_far {
