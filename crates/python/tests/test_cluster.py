@@ -239,19 +239,17 @@ def die_sending(once):
 
 
 def test_a_worker_killed_in_the_midst_of_sending_holds_nothing_up(expected, tmp_path):
-    pools = []
-
-    def make():
+    # Each half has a file of its own: a worker of the first that had one piece sends its goodbye as its second message.
+    def make(once):
         context = multiprocessing.get_context("spawn")
-        pools.append(
-            ProcessPoolExecutor(2, mp_context=context, initializer=die_sending, initargs=(tmp_path / "once",))
-        )
+        pools.append(ProcessPoolExecutor(2, mp_context=context, initializer=die_sending, initargs=(tmp_path / once,)))
         return pools[-1]
 
-    check(cluster.render(scene(), 200, 150, executor=make, piece=64, **OPTIONS), expected)
+    pools = []
+    check(cluster.render(scene(), 200, 150, executor=lambda: make("renewed"), piece=64, **OPTIONS), expected)
     assert len(pools) == 2
-    (tmp_path / "once").unlink()
-    with make() as broken, pytest.raises(cluster.LostWork, match="give a function that makes one|lost too often"):
+    fault = "give a function that makes one|lost too often"
+    with make("broken") as broken, pytest.raises(cluster.LostWork, match=fault):
         cluster.render(scene(), 200, 150, executor=broken, piece=64)
 
 
