@@ -39,10 +39,16 @@ pub struct App {
 struct OnPage {
     report: crate::report::Report,
     hover: crate::hover::Hover,
+    due: Arc<std::sync::Mutex<crate::hover::Due>>,
     /// Whether the last frame has been put off.
     is_put_off: bool,
     /// Whether there has been news since.
     woken: Arc<std::sync::atomic::AtomicBool>,
+}
+
+#[cfg(target_arch = "wasm32")]
+fn locked(due: &std::sync::Mutex<crate::hover::Due>) -> std::sync::MutexGuard<'_, crate::hover::Due> {
+    due.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 /// What is asked for at the start.
@@ -67,7 +73,8 @@ impl App {
         #[cfg(target_arch = "wasm32")]
         let (page, woken) = {
             let page = OnPage::default();
-            let woken = page.woken.clone();
+            let (woken, due) = (page.woken.clone(), page.due.clone());
+            ctx.set_repaint_observer(move |request| locked(&due).ask(request.delay, Instant::now()));
             (page, woken)
         };
         let wake: crate::link::Wake = Arc::new(move || {
@@ -229,11 +236,12 @@ impl eframe::App for App {
         let Some(raster) = self.state.raster.as_ref().filter(|raster| raster.is_software()) else { return };
         let line = ctx.options(|options| options.input_options.line_scroll_speed);
         input.events = crate::hover::unspread(std::mem::take(&mut input.events), line);
-        let is_wanted = woken || raster.is_unfinished() && !self.state.is_being_traced();
-        // Where a frame has been put off, the next has been requested by this very application.
-        let is_asked_for = !self.page.is_put_off && ctx.has_requested_repaint();
-        let (latest, is_down) = ctx.input(|input| (input.pointer.latest_pos(), input.pointer.any_down()));
-        let view = self.viewport.rect().filter(|_| !self.panels.marking && !is_down && !is_asked_for);
+        let is_asked_for = locked(&self.page.due).begin(Instant::now()) && !self.page.hover.is_quiet();
+        let is_wanted = woken || is_asked_for || raster.is_unfinished() && !self.state.is_being_traced();
+        let (latest, is_down) = ctx.input(|input| {
+            (input.pointer.latest_pos(), input.pointer.any_down() || !input.keys_down.is_empty())
+        });
+        let view = self.viewport.rect().filter(|_| !self.panels.marking && !is_down);
         let is_over_view = |at: egui::Pos2| {
             view.is_some_and(|view| view.contains(at))
                 && ctx.layer_id_at(at).is_none_or(|layer| layer.order == egui::Order::Background)
@@ -250,7 +258,10 @@ impl eframe::App for App {
     #[cfg(target_arch = "wasm32")]
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
         if self.page.is_put_off {
-            ctx.request_repaint_after(LOOK);
+            // Unlike what others have asked for, this is no reason to draw.
+            let before = *locked(&self.page.due);
+            ctx.request_repaint_after(before.wait(Instant::now()).map_or(LOOK, |wait| wait.min(LOOK)));
+            *locked(&self.page.due) = before;
         }
     }
 }

@@ -31,6 +31,12 @@ pub struct Hover {
 }
 
 impl Hover {
+    /// Whether the last frame showed nothing but a hand that hovers or turns the wheel: what it asked for settles when
+    /// the hand rests.
+    pub fn is_quiet(&self) -> bool {
+        self.shown.is_some()
+    }
+
     /// Whether the frame that shows these events can wait for more of them: those that have been put off, and then what
     /// has come since. Nothing waits where something else `is_wanted`, such as news.
     pub fn can_wait(
@@ -64,6 +70,36 @@ impl Hover {
     }
 }
 
+/// When a frame is due, by what the application asks for: an observer of its requests tells it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Due {
+    at: Option<Instant>,
+    /// Until when things settle that asked for a frame without delay: each such request is one for two.
+    settles_until: Option<Instant>,
+}
+
+impl Due {
+    /// A frame is asked for.
+    pub fn ask(&mut self, delay: Duration, now: Instant) {
+        if delay.is_zero() {
+            self.settles_until = Some(now + SETTLED);
+        } else {
+            self.at = self.at.into_iter().chain(now.checked_add(delay)).min();
+        }
+    }
+
+    /// A frame begins: whether it was asked for, or comes of events alone. What is due later stays.
+    pub fn begin(&mut self, now: Instant) -> bool {
+        let is_due = self.at.take_if(|at| *at <= now).is_some();
+        is_due || self.settles_until.is_some_and(|until| now < until)
+    }
+
+    /// How long it is until the next one.
+    pub fn wait(&self, now: Instant) -> Option<Duration> {
+        self.at.map(|at| at.saturating_duration_since(now))
+    }
+}
+
 /// The same events, with turns of a wheel (a line is so many points) in parts that are not spread over frames.
 pub fn unspread(events: Vec<Event>, line: f32) -> Vec<Event> {
     let in_parts = |event| {
@@ -86,6 +122,8 @@ mod tests {
     use eframe::egui;
     use eframe::egui::pos2;
     use eframe::egui::vec2;
+
+    const LATER: Duration = Duration::from_millis(100);
 
     fn over_view(at: Pos2) -> bool {
         at.x >= 10.0
@@ -149,6 +187,23 @@ mod tests {
         assert!(!hover.can_wait(&[], over_view, true, now));
         assert!(hover.can_wait(&[], over_view, false, now));
         assert!(hover.can_wait(&events, over_view, false, now));
+    }
+
+    #[test]
+    fn a_frame_that_is_due_later_is_not_asked_for_now() {
+        let (mut due, start) = (Due::default(), Instant::now());
+        let ms = |ms| start + Duration::from_millis(ms);
+        assert!(!due.begin(start) && due.wait(start).is_none());
+        due.ask(LATER, start);
+        due.ask(LATER * 2, start);
+        due.ask(Duration::MAX, start);
+        assert!(!due.begin(ms(20)));
+        assert_eq!(due.wait(ms(20)), Some(LATER - Duration::from_millis(20)));
+        assert!(due.begin(start + LATER), "it stays due");
+        assert!(!due.begin(start + LATER), "once");
+        due.ask(Duration::ZERO, ms(500));
+        assert!(due.begin(ms(500)) && due.begin(ms(510)), "things settle");
+        assert!(!due.begin(ms(500) + SETTLED), "if there was a frame for them or not");
     }
 
     #[test]

@@ -334,7 +334,7 @@ def judge(moves, waits):
     assert len(every) >= 30 and len(waits["wheel"]) >= 10
     if moves.others < 0.1:
         assert quantile(every, 0.95) <= 50, waits
-        assert quantile(waits["wheel"], 0.5) <= 400, waits
+        assert quantile(waits["wheel"], 0.5) <= 250, waits
     else:
         assert quantile(every, 0.5) < 500, waits
 
